@@ -147,7 +147,7 @@ class _Rhythm:
 
 
 def _run(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> None:
-    """Step a clock until it is stopped or gone."""
+    """Step a clock until it is stopped or garbage-collected."""
     due = time.monotonic() + rhythm.timestep / rhythm.pace
     while not rhythm.ending.wait(max(due - time.monotonic(), PAUSE)):
         with rhythm.lock.attempt(POLL) as is_free:
@@ -158,7 +158,7 @@ def _run(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> None:
 
 
 def _step(clock: "weakref.ref[Clock]", rhythm: _Rhythm) -> bool:
-    """Run a time step; return whether to continue."""
+    """Run one time step; return whether the thread should continue."""
     present = clock()
     if present is None or rhythm.ending.is_set():
         return False

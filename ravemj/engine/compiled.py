@@ -80,7 +80,7 @@ class Compiled:
         return compiled
 
     def _report(self, complaint: str, scene: Scene, diagnostics: Diagnostics) -> None:
-        """Record a warning of MuJoCo, with the link concerned if it names a DOF."""
+        """Record a warning of MuJoCo as a diagnostic, at the source of the link if the warning names a DOF."""
         source, about = Source("the translated model", 0), ""
         match = _DOF.search(complaint)
         if match:

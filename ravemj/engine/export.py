@@ -108,7 +108,7 @@ def _write_meshes(folder: Path, mjcf: Mjcf) -> None:
 
 
 def _check_former(path: AnyPath, file: Path) -> None:
-    """Check that an MJCF file to be replaced was written by ravemj."""
+    """Raise an OutputError if the MJCF file to be replaced was not written by ravemj."""
     try:
         is_ours = _is_ours(file)
     except OSError:  # it does not exist, or the next step reports the error
@@ -123,7 +123,7 @@ def _is_ours(file: Path) -> bool:
 
 
 def _check_untouched(path: AnyPath, lost: Collection[AnyPath]) -> None:
-    """Check that no file that the model was read from would be overwritten."""
+    """Raise an OutputError if writing to ``path`` would overwrite the files ``lost``, from which the model was read."""
     if lost:
         names = ", ".join(str(Path(file)) for file in lost)
         raise OutputError(f"cannot write {os.fspath(path)}: the model was read from {names}")

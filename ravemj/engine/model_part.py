@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ravemj.formats.mjcf import BodyNames
 
 _WIDTHS = {int(mujoco.mjtJoint.mjJNT_FREE): (7, 6), int(mujoco.mjtJoint.mjJNT_BALL): (4, 3)}
-"""Numbers of ``qpos`` and ``qvel`` elements of joint types with several elements; other types have one."""
+"""Lengths in ``qpos`` and ``qvel`` of joint types with more than one element."""
 
 
 class ModelPart:

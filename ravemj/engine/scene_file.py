@@ -12,10 +12,10 @@ from ravemj.model.look import FLOOR, first_rotation
 NAME = "scene.xml"
 
 _HALF_VIEW = np.radians(45.0 / 2)
-"""Half of the angle of view of MuJoCo's cameras."""
+"""Half the field of view of MuJoCo's default camera [rad]."""
 
 _ROOM = 1.1
-"""Camera distance as a multiple of that at which everything just fits."""
+"""Camera distance, as a multiple of the distance at which the scene just fits."""
 
 
 def scene_text(translation: Translation, file: str) -> str:

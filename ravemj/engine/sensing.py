@@ -15,7 +15,7 @@ from ravemj.model.drawing import NOTHING, Primitives, line_list, merge, mesh, po
 from ravemj.model.scene import Device, FlashLidar, ForceTorque, Intrinsics, Laser
 
 _WHOLE = 1e-9
-"""Rounding tolerance of the last ray of a range, as a fraction of the angle step."""
+"""Rounding tolerance for the last ray of a laser's range, as a fraction of the angle step."""
 
 _FRUSTUM = 0.15
 """Depth of a drawn camera frustum [m]."""
@@ -28,7 +28,7 @@ _LINE = 1.5  # pixels
 _ICON_RAYS = 11
 _FAN_OPACITY = 0.2  # as in OpenRAVE
 _EDGES = (0, 1, 0, 2, 0, 3, 0, 4, 1, 2, 2, 3, 3, 4, 4, 1, 5, 6, 5, 7)
-"""Edges of a frustum: from the eye to the corners, between these, and the mark on the image's top side."""
+"""Edges of a frustum: from the eye to the corners, between corners, and a mark at the image's top side."""
 
 
 class Scan(NamedTuple):
@@ -182,7 +182,7 @@ def scan_figure(device: Laser | FlashLidar, measured: Scan, color: Vec3) -> Prim
 
 
 def _fan(origin: Floats, ends: Floats, color: Vec3, opacity: float) -> Primitives:
-    """Return the triangles between an origin and consecutive ray ends."""
+    """Return the triangles between the origin and consecutive ray ends, to draw a laser scan."""
     first = np.arange(1, len(ends))
     triangles = np.column_stack([np.zeros_like(first), first, first + 1])
     return mesh(np.vstack([origin, ends]), triangles, _colors(len(ends) + 1, color, opacity))

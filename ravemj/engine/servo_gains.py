@@ -33,7 +33,7 @@ POSES = 32
 """Number of random configurations, besides the start, in which inertias and loads are measured."""
 
 _FARTHEST = 2.0
-"""Maximum distance of sliders from the start pose [m], since some have limits of kilometres."""
+"""Maximum distance of sampled slider positions from the start pose [m], since some limits are kilometres."""
 
 _FOOT = 0.02
 """Height above the lowest point of a standing robot [m] below which a link is a foot."""
@@ -167,7 +167,7 @@ def _measured(kinematics: BodyKinematics, coupling: Coupling) -> tuple[Floats, F
 def _standing(
     kinematics: BodyKinematics, coupling: Coupling, body: KinBody, gravity: Sequence[float]
 ) -> tuple[Floats, Floats]:
-    """Return inertia and torque at each DOF due to the robot's weight on half of the feet, as in a trot."""
+    """Return inertia and torque of each DOF due to the robot's weight if half of the feet carry it, as in a trot."""
     transforms = kinematics.link_transforms()
     bounds = [link_bounds(link, T_world_link) for link, T_world_link in zip(body.links, transforms, strict=True)]
     lows = [np.inf if extent is None else extent.low[2] for extent in bounds]

@@ -77,7 +77,7 @@ def summary(translation: Translation) -> str:
 
 
 def _is_free(translation: Translation) -> bool:
-    """Return whether the first body of a model can fall."""
+    """Return whether the first joint of a model is a free joint, so that its body can fall."""
     return bool(translation.model.jnt_type[0] == mujoco.mjtJoint.mjJNT_FREE)
 
 
@@ -165,7 +165,7 @@ def _touching(translation: Translation) -> Point:
 
 
 def _passive(translation: Translation) -> Point:
-    """Simulate without actuators: energy must not grow."""
+    """Simulate without actuators, and check that the energy does not grow."""
     model, data = translation.model, translation.home
     flags, growth, kinetic = model.opt.disableflags, 0.0, 0.0
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ACTUATION
@@ -212,7 +212,7 @@ def droop(model: mujoco.MjModel, data: mujoco.MjData) -> dict[str, tuple[float, 
 
 
 def _servos(model: mujoco.MjModel) -> list[int]:
-    """Return the position servos of joints; a fragment of MJCF may have added other actuators."""
+    """Return the indices of position servos; other actuators may come from an MJCF fragment of the user."""
     return np.flatnonzero((model.actuator_trntype == 0) & (model.actuator_biasprm[:, 1] != 0)).tolist()
 
 
@@ -241,7 +241,7 @@ def _or_unstable(words: str, data: mujoco.MjData) -> str:
 
 
 def _stepping(translation: Translation) -> Point:
-    """Simulate a step of each joint alone, away from its nearer limit."""
+    """Simulate a step response of each servo alone, away from the joint's nearer limit."""
     model, data = translation.model, translation.home
     droop(model, data)
     state = np.zeros(mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS))
@@ -264,7 +264,7 @@ def _stepping(translation: Translation) -> Point:
 
 
 def _step_size(model: mujoco.MjModel, data: mujoco.MjData, actuator: int) -> float:
-    """Return the size of a joint's test step; 0 if its limits are too narrow."""
+    """Return the signed step for testing a joint's servo [rad or m]; 0 if the joint's limits are too narrow."""
     joint = int(model.actuator_trnid[actuator, 0])
     size = _STEP[bool(model.jnt_type[joint] == _SLIDE)]
     if not model.jnt_limited[joint]:
@@ -276,7 +276,7 @@ def _step_size(model: mujoco.MjModel, data: mujoco.MjData, actuator: int) -> flo
 
 
 def _response(model: mujoco.MjModel, data: mujoco.MjData, actuator: int, size: float) -> tuple[float, float]:
-    """Return overshoot, as a fraction of the step, and 90 % rise time [s]; infinite if 90 % is not reached."""
+    """Return a servo's overshoot, as a fraction of the step, and 90 % rise time [s], infinite if not reached."""
     place = model.jnt_qposadr[model.actuator_trnid[actuator, 0]]
     before, over, arrival = float(data.qpos[place]), 0.0, np.inf
     data.ctrl[actuator] += size

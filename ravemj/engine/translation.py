@@ -214,7 +214,7 @@ def translate(scene: Scene, diagnostics: Diagnostics, choices: TranslationChoice
 
 
 def _scene_text(scene: Scene, excluded: Sequence[tuple[str, str]]) -> XmlLines:
-    """Return the text of scene properties that belong to no body, for reading the document again."""
+    """Return scene properties that belong to no body, as text from which ravemj reads them again."""
     content = XmlLines(2)
     content.text_element(SCENE, scene_text(scene, excluded))
     return content
@@ -281,7 +281,7 @@ def _warn_of_motors(body: KinBody, loads: ServoLoads, diagnostics: Diagnostics) 
 
 
 class _Poses:
-    """Configurations of bodies as ``qpos`` of a common model."""
+    """Converter of joint values of several bodies to ``qpos`` of their common model."""
 
     def __init__(self, model: mujoco.MjModel, names: Sequence[mjcf.BodyNames], bodies: Sequence[KinBody]) -> None:
         self.model = model
@@ -311,7 +311,7 @@ class _Poses:
 def _touching(compiled: Compiled, names: Sequence[mjcf.BodyNames], qpos: Floats) -> tuple[tuple[str, str], ...]:
     """Return the pairs of links that touch in a configuration, sorted.
 
-    A movable body may lie on others, so only its own link pairs are included.
+    Pairs of a falling body with other bodies are left out, as it may lie on them.
     """
     model, data = compiled.model, compiled.data
     data.qpos[:] = qpos

@@ -25,12 +25,12 @@ class _MovingAxis(NamedTuple):
     """Joint axis of an arm: its index in the body, and its line in the base frame.
 
     Attributes:
-        joint: Index of the joint among active, then passive joints.
+        joint: Index of the joint among the active, then the passive joints of the body.
         number: Index of the axis in the joint.
-        axis: The axis.
-        slides: Whether it is prismatic.
-        direction: Its direction.
-        point: A point on it [m].
+        axis: Limits and other properties of the axis.
+        slides: Whether the axis is prismatic.
+        direction: Unit vector along the axis.
+        point: A point on the axis [m].
     """
 
     joint: int
@@ -91,7 +91,7 @@ def _made(moving: Sequence[_MovingAxis], T_base_tool: Floats, direction: Vec3) -
 
 
 def _axes(name: str, index: int, joint: Joint, T_base_parent: Pose) -> list[_MovingAxis]:
-    """Return the axes of a joint, in the base frame."""
+    """Return the axes of a joint, in the base frame of the arm, at joint values of 0."""
     if joint.kind == "spherical":
         message = f"joint '{joint.name}' in {name} is spherical: inverse kinematics needs joints of one value each"
         raise ValueError(message)
@@ -104,7 +104,7 @@ def _axes(name: str, index: int, joint: Joint, T_base_parent: Pose) -> list[_Mov
 
 
 def _following(body: KinBody, manipulator: Manipulator, inner: Chain, moving: Sequence[_MovingAxis]) -> FollowingChain:
-    """Wrap the chain of all joints of an arm, mimic joints included, as a chain in the DOFs of the arm alone."""
+    """Wrap a chain that contains mimic joints, ``inner``, as a chain whose only variables are the arm's DOFs."""
     places = {
         dof: (index, dofs.index(dof))
         for index in range(len(body.joints))
@@ -123,7 +123,7 @@ def _following(body: KinBody, manipulator: Manipulator, inner: Chain, moving: Se
 
 
 def _aside(body: KinBody, joint: int, number: int) -> _MovingAxis:
-    """Return the axis of a joint that moves the arm only through mimic joints; its position does not matter."""
+    """Return the axis of a DOF that moves the arm only through mimic joints; its line is a placeholder."""
     followed = body.all_joints[joint]
     return _MovingAxis(joint, number, followed.axes[number], followed.slides(number), (0.0, 0.0, 1.0), (0.0, 0.0, 0.0))
 
@@ -204,7 +204,7 @@ class ArmSolver:
 
 
 def _with_limits(solver: ArmSolutions | None, chain: Chain) -> ArmSolutions | None:
-    """Return a solver with the limits of a chain; None if other properties of the chain differ."""
+    """Return ``solver`` with the joint limits of ``chain``; None if the chains differ in anything else."""
     if solver is None or isinstance(chain, FollowingChain) or isinstance(solver.chain, FollowingChain):
         return None
     if solver.chain.reach != chain.reach or solver.chain.dof != chain.dof:

@@ -14,9 +14,9 @@ from ravemj.ik.tasks import goal_poses
 from ravemj.ik.vectors import Floats
 
 _FINEST = 0.02
-"""Resolution of the search within intervals of a free joint, as a fraction of its step."""
+"""Finest spacing of the values tried inside an interval of a free joint, as a fraction of its sampling step."""
 _MOST = 240
-"""Maximum number of free joint values tried in intervals."""
+"""Maximum number of values of a free joint tried inside the intervals between its samples."""
 
 
 def nearest_first(

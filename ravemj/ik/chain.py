@@ -20,7 +20,7 @@ _IDENTITY = np.eye(3)
 _EXACT, _NEARLY = 1e-12, 1e-3
 """Maximum errors of a rotation: accepted as rounding error, and corrected to the nearest rotation."""
 _FEW = 128
-"""Number of configurations up to which the overhead of numpy calls dominates."""
+"""Number of configurations up to which forward kinematics use the variant with fewer numpy calls."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -167,7 +167,7 @@ class Chain:
 
     @cached_property
     def _motions(self) -> Floats:
-        """Matrices A, B, C of each joint's motion, shape (n, 3, 16): A + B cos(q) + C sin(q), if prismatic A + B q."""
+        """Matrices A, B, C of each joint's motion, (n, 3, 16): A + B cos(q) + C sin(q), or A + B q if prismatic."""
         motions = np.zeros((self.dof, 3, 4, 4))
         for motion, axis, point, sliding in zip(motions, self.axes, self.points, self.prismatic.tolist(), strict=True):
             motion[0, 3, 3] = 1
@@ -181,10 +181,7 @@ class Chain:
         return motions.reshape(self.dof, 3, 16)
 
     def _few_poses(self, turns: Turns) -> Floats:
-        """Return the motions of the base by the first joints, none to all of them, shape (n + 1, M, 4, 4).
-
-        There are fewer numpy calls and more arithmetic than in ``_frames``.
-        """
+        """Return products of the first 0 … n joint motions, shape (n + 1, M, 4, 4), with few numpy calls."""
         count = turns[0].shape[-1]
         factors = np.zeros((self.dof, 3, count))
         factors[:, 0] = 1
@@ -216,7 +213,7 @@ class Chain:
         return self._frames(turns)[-1]
 
     def _tool_of(self, poses: Floats) -> Floats:
-        """Return the tool's x, y, z and origin, shape (4, 3, M), for ``_few_poses``."""
+        """Return the tool's x, y, z and origin, shape (4, 3, M), from the result of ``_few_poses``."""
         return (poses[-1] @ self.T_base_tool)[:, :3].transpose(2, 1, 0)
 
     def forward(self, values: Floats) -> Floats:
@@ -251,7 +248,7 @@ class Chain:
 
     @cached_property
     def _lines(self) -> Floats:
-        """Direction and point of each axis as columns that ``_few_poses`` move, shape (n, 4, 2)."""
+        """Homogeneous direction and point of each axis, columns to multiply by ``_few_poses``; shape (n, 4, 2)."""
         lines = np.zeros((self.dof, 4, 2))
         lines[:, :3, 0], lines[:, :3, 1], lines[:, 3, 1] = self.axes, self.points, 1
         return lines

@@ -22,15 +22,15 @@ ACCURATE = 1e-9
 _CHUNK = 1536
 """Maximum number of poses per batch, so that the arrays fit into the processor's cache."""
 _MARGIN = 0.05
-"""Distance from the limits [rad or m], larger than any refinement, within which solutions are refined."""
+"""Distance beyond the limits [rad or m] up to which solutions are refined; Newton steps change them less than this."""
 _SAME = 1e-5
-"""Tolerance of equal solutions."""
+"""Largest difference of equal solutions, in cosines, sines and distances."""
 _STEPS = 12
 """Maximum number of Newton steps."""
 _MOST_GROWTH = 2.0
-"""Largest factor by which Newton steps may increase the error of solutions that should be accurate.
+"""Ratio of the error to that of an accurate closed form above which Newton's method stops.
 
-They increase it more beyond the border of the reach, where the family returns a double solution with an error.
+The error grows more beyond the border of the reach, where the family returns a double solution with an error.
 """
 _SETTLED, _SLOWEST = 3, 0.5
 """Number of Newton steps before convergence is checked, and the maximum error ratio of a later step.
@@ -152,7 +152,7 @@ class ClosedForm:
     def _check(
         self, poses: Floats, turns: Turns, values: Floats, valid: Bools, merged: Bools, *, limits: bool
     ) -> Floats:
-        """Write the family's solutions into ``values``, ``valid`` and ``merged``; return their errors."""
+        """Write the family's joint values, ``valid`` and ``merged`` into the given arrays; return the pose errors."""
         if isinstance(turns, np.ndarray):
             np.arctan2(turns[:, 1], turns[:, 0], out=values)
         else:
@@ -224,10 +224,10 @@ class ClosedForm:
         return self._error(tool, poses[:, :3].transpose(2, 1, 0))
 
     def _refine(self, doubtful: Bools, goal: Floats, values: Floats, valid: Bools) -> bool:
-        """Refine doubtful solutions with Newton's method, mark as valid those that reach their goal.
+        """Refine doubtful solutions with Newton's method, and mark those that reach their goal as valid.
 
         Returns:
-            Whether any does.
+            Whether any of them reaches its goal.
         """
         branch, pose = np.nonzero(doubtful)
         start = values[:, branch, pose].T
@@ -287,7 +287,7 @@ def _filled(values: Floats, shape: tuple[int, ...]) -> Floats:
 
 
 def _merge(parts: Floats, valid: Bools, merged: Bools) -> None:
-    """Merge equal solutions, which occur if two axes or two branches coincide.
+    """Mark all but one of equal solutions as invalid; they occur if two axes or two branches coincide.
 
     ``parts`` are cosines, sines and distances of all joints, shape (K, B, N); ``valid`` (B, N) and ``merged`` (N,) are
     changed. Equal rows have equal sums with fixed weights, so only neighbours in the order of these sums are compared.

@@ -17,9 +17,9 @@ SAMPLES = 64
 """Number of configurations in a validation."""
 _FEW = 8
 _SOLVED = (Task.TRANSFORM, Task.PLACE, Task.PLACE_XY, Task.PLANAR)
-"""Tasks that families solve; ``reductions`` reduces all others to them."""
+"""Tasks that solver families solve directly; ``reductions`` reduces all others to these."""
 _TRIED = 32
-"""Maximum number of families tried for one choice of locked joints."""
+"""Maximum number of solver families tried for one choice of locked joints."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,6 @@ def derive(
 
 
 def _prove(solver: ClosedForm) -> Validation | None:
-    """Validate a solver, first with few configurations; return the validation if it succeeds, else None."""
     try:
         if certify(solver, count=_FEW).holds:
             certificate = certify(solver)
@@ -113,7 +112,7 @@ def _prove(solver: ClosedForm) -> Validation | None:
 
 
 def _regular(chain: Chain, task: Task, free: Sequence[int]) -> bool:
-    """Return whether the joints move the tool independently, so that the number of solutions is finite."""
+    """Return whether the free joints can move the tool independently, so that the number of solutions is finite."""
     values = random_values(chain, 4, np.random.default_rng(4))
     _, jacobians = chain.forward_and_jacobian(values)
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
@@ -130,6 +129,6 @@ def _is_planar(chain: Chain, free: Sequence[int]) -> bool:
 
 
 def _sideways(exact: Chain, chain: Chain) -> float:
-    """Return the largest displacement of nominal revolute axes from the true ones, divided by the reach."""
+    """Return the largest distance between a nominal revolute axis and the true one, divided by the reach."""
     away = np.cross(exact.points - chain.points / chain.reach, exact.axes)[~chain.prismatic]
     return float(np.abs(away).max(initial=0.0))

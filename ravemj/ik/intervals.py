@@ -22,17 +22,17 @@ if TYPE_CHECKING:
     from ravemj.ik.solver import ArmSolutions
 
 _STEEP = 1.0
-"""Maximum ratio of a minimum of the excess to the rise beside it with which the excess may reach 0."""
+"""Ratio of a minimum of the excess to the rise beside it, up to which the excess may reach 0 between samples."""
 _CLOSE, _VERY_CLOSE = 0.5, 0.05
 """Maximum excess from which a descent is started: from minima of the excess, and from other samples."""
 _ENOUGH = 32
-"""Number of samples below which twice as many are added."""
+"""Number of samples of the free joint below which twice this number is added."""
 _MOST_VALLEYS, _FIRST_VALLEYS = 6, 2
 """Maximum number of samples with a minimum of the excess that are searched around, and how many come first."""
 _MOST_DESCENTS, _LAST_DESCENTS = 12, 4
 """Maximum number of descents from minima of the excess, and then, if they fail, from the samples with the least one."""
 _FRACTIONS = np.linspace(0, 1, 12)
-"""Fractions of the interval between the samples around a minimum, at which solutions are sought."""
+"""Fractions of the interval around a minimum of the excess, between the neighbouring samples, that are tried."""
 _PARTS, _SECTIONS = 8, 5
 """Subdivisions per section, and number of sections: an end of an interval is found to 1 / 9⁵ of a step."""
 
@@ -108,7 +108,7 @@ def between_samples(solver: "ArmSolutions", pose: Floats, free: Floats, solution
 
 
 def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tuple[int, Ints]]) -> Iterator[Found]:
-    """Yield solutions around minima of the excess, each given by a sample and the branches with a minimum there."""
+    """Yield solutions near minima of the excess; a valley is a sample and the branches with a minimum there."""
     count = len(_FRACTIONS)
     parts, rest = list[Solutions](), list[Ints]()
     for first, some in ((0, valleys[:_FIRST_VALLEYS]), (_FIRST_VALLEYS, valleys[_FIRST_VALLEYS:])):
@@ -136,7 +136,7 @@ def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tu
 def _descents(
     solver: "ArmSolutions", pose: Floats, solutions: Solutions, missed: Floats, places: Ints, most: int = _MOST_DESCENTS
 ) -> Iterator[Found]:
-    """Yield the solutions that numeric descents reach from the samples and branches (K, 2) nearest to a solution."""
+    """Yield solutions from numeric descents, started at the samples and branches ``places`` (K, 2) of least excess."""
     for sample, branch in _distinct(missed, places, most).tolist():
         reached = solver.numeric.descend(pose, clamped(solver.chain, solutions.values[sample, branch]))
         if reached.error < ACCURATE:
@@ -155,7 +155,7 @@ def _distinct(missed: Floats, places: Ints, most: int) -> Ints:
 
 
 def _valleys(missed: Floats) -> tuple[Ints, Ints]:
-    """Return the samples and branches with a minimum of the excess (K, B) that may reach 0 between two samples."""
+    """Return the samples and branches at which the excess (K, B) has a minimum that may reach 0 between two samples."""
     around = np.pad(missed, ((1, 1), (0, 0)), constant_values=np.inf)
     before, after = around[:-2], around[2:]
     lowest = (missed <= before) & (missed <= after) & (missed > 0) & (missed < _CLOSE)
@@ -186,7 +186,7 @@ def intervals(solver: "ArmSolutions", pose: Floats, free: Floats, *, limits: boo
 def _ends(
     solver: "ArmSolutions", pose: Floats, branch: Ints, inside: Floats, outside: Floats, *, limits: bool
 ) -> Floats:
-    """Return the ends of intervals, shape (C,), each between a value inside and a value outside."""
+    """Return the ends, shape (C,), of intervals of the free joint, by section between ``inside`` and ``outside``."""
     steps = np.arange(_PARTS + 2) / (_PARTS + 1)
     rows = np.arange(len(branch))
     for _ in range(_SECTIONS if len(branch) else 0):

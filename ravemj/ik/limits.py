@@ -59,9 +59,9 @@ def clamped(chain: Chain, values: Floats) -> Floats:
 
 
 def _turns_beyond(chain: Chain, values: Floats) -> tuple[Floats, Floats]:
-    """Return the angles from values up to the lower limits, and from the upper limits up to values, in [0, 2 pi].
+    """Return by how much values are below the lower and above the upper limits, modulo a turn, in [0, 2 pi].
 
-    Both are 0 if a value is within its limits after some turns.
+    Both are 0 if a value is within its limits after some full turns.
     """
     lower, upper = chain.bounds
     below, above = lower - values, values - upper

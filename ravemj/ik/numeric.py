@@ -108,7 +108,7 @@ class NumericSolver:
         return missing * scale, jacobian * scale[:, None]
 
     def _step(self, values: Floats, error: Floats, jacobian: Floats, damping: float) -> Floats:
-        """Return the values after the best damped step within the limits."""
+        """Return joint values after a damped least-squares step, the best within the limits."""
         pull = jacobian.T @ error
         matrix = jacobian.T @ jacobian + damping * self._identity
         ahead = values + np.linalg.solve(matrix, pull)
@@ -216,7 +216,7 @@ class CompiledKinematics:
 
 
 def _mjcf(chain: Chain) -> str:
-    """Return a chain as MJCF bodies whose axes are parallel to the base's at joint values of 0."""
+    """Return a chain as an MJCF model whose body frames are parallel to the base at joint values of 0."""
     points = np.vstack([np.zeros(3), chain.points, chain.T_base_tool[:3, 3]])
     steps = [_text(step) for step in np.diff(points, axis=0)]
     kinds = ("slide" if sliding else "hinge" for sliding in chain.prismatic.tolist())

@@ -50,7 +50,7 @@ def reduction(chain: Chain, task: Task) -> Reduction | None:
 
 
 def _centred(chain: Chain, task: Task) -> Reduction:
-    """Move all axes to the origin, where a direction is a position at distance 1."""
+    """Reduce a task without position: move all axes to the origin, so that a direction is a position at distance 1."""
     tool = chain.T_base_tool.copy()
     tool[:3, 3] = tool[:3, :3] @ chain.direction if task is Task.DIRECTION else 0
     centred = replace(chain, points=np.zeros_like(chain.points), T_base_tool=tool)
@@ -61,7 +61,7 @@ def _centred(chain: Chain, task: Task) -> Reduction:
 
 
 def _with_joints(chain: Chain, sliding: list[bool], task: Task, how: str) -> Reduction:
-    """Add virtual joints along or about the tool's direction.
+    """Reduce a task by adding virtual joints along or about the tool's direction.
 
     They are inserted before real joints about the same line, with which they commute: if such a joint is locked, the
     others stay adjacent.

@@ -69,7 +69,7 @@ def choices(chain: Chain, task: Task) -> Iterator[tuple[int, ...]]:
 
 
 def _is_like_a_human_arm(chain: Chain) -> bool:
-    """Return whether there are seven joints, with intersecting axes of the first three and of the last three."""
+    """Return whether an arm has a spherical shoulder, an elbow and a spherical wrist: seven revolute joints."""
     if chain.dof != 7 or chain.prismatic.any():
         return False
     exact = nominal(chain)

@@ -86,10 +86,10 @@ def _look_at(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[F
 
 
 def _planar(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[Floats, Floats]:
-    """Return the planar residual.
+    """Return error and Jacobian of a planar task: x, y and the angle in the plane.
 
-    As in OpenRAVE, the angle is that of the direction in the plane, or of the tool if the direction is perpendicular to
-    it.
+    As in OpenRAVE, the angle is that of the arm's direction in the plane, or of the tool if the direction is
+    perpendicular to the plane.
     """
     pointing, wanted = tool.rotation @ chain.direction, goal[:3, :3] @ chain.direction
     moves, turns = np.split(tool.jacobian, 2)

@@ -28,13 +28,13 @@ from ravemj.ik.vectors import Floats
 
 _TRIED = 12
 _STARTS = 24
-"""Number of starts of a search between the samples of a free joint."""
+"""Number of starts of a numeric search for a solution."""
 FIRST, NEXT = 12, 96
 """Batch sizes of free joint samples; the first is small, since samples near the present values mostly suffice."""
 
 
 _NEAREST_STARTS = 12
-"""Number of starts of a search for the nearest reachable pose."""
+"""Number of starts of a numeric search for the nearest reachable pose."""
 _MOST_SAMPLES = 256
 _NO_ANGLE = 1e-4
 
@@ -287,7 +287,7 @@ class ArmSolutions:
     def _best(
         self, solutions: Solutions, index: int, seed: Floats, weights: Floats | None, more: Floats | None = None
     ) -> Floats | None:
-        """Return the solution of pose ``index`` or of ``more`` that is within the limits and nearest to ``seed``."""
+        """Return the solution within the limits nearest to ``seed``; None if pose ``index`` and ``more`` have none."""
         rows = solutions.of(index)
         rows = self.spread(rows, seed) if solutions.merged[index] else rows
         rows = rows if more is None else np.vstack([rows, more])

@@ -199,7 +199,7 @@ class ArmSearch:
         return not asks or self.accepts(row, before_collisions=False)
 
     def _collides(self, row: Floats) -> bool:
-        """Return whether the robot collides at its present joint values."""
+        """Return whether the robot collides at its present joint values, according to ``self.checks``."""
         if not (self.checks.others or self.checks.itself):
             return False
         checks, body, arm, world = self.checks, self.body, self.arm, self._checker.world()
@@ -221,7 +221,7 @@ class ArmSearch:
         return self._hits(world, pairs, row, Reason.COLLISION)
 
     def _hits(self, world: CollisionWorld, pairs: Pairs, row: Floats, reason: Reason) -> bool:
-        """Return whether a pair of geoms collides; if so, reject the joint values."""
+        """Return whether one of the pairs of geoms collides; if so, reject the solution ``row``."""
         findings = self._checker.find(world, pairs) if self.explains else None
         hit = bool(findings.collisions) if findings else self._checker.collides(world, pairs)
         if hit:

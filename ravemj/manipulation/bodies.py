@@ -37,13 +37,13 @@ ALL = 0xFFFF
 """All tests that a configuration of a path has to pass."""
 
 _UNLIMITED = {"lower": -np.inf, "upper": np.inf, "max_jerk": np.inf}
-"""Axis fields of values without limits: IK goals, and poses without a body."""
+"""Limits and other axis properties of values without a joint: IK goals, and poses without a body."""
 
 _NO_BODY = "__dummy__"
 """Body name that ``RaveGetAffineConfigurationSpecification`` uses without a body."""
 
 _RESOLUTION = 0.02
-"""OpenRAVE's default for the step in which a value is tested for collisions [rad or m]."""
+"""OpenRAVE's default for the step of collision tests along a value [rad or m]."""
 
 _ROUND = np.pi  # samples of a circular joint are drawn from [-pi, pi], since the joint has no limits of its own
 
@@ -286,7 +286,7 @@ def _restore(saved: Sequence[tuple[BodyState, SavedConfiguration]], stamps: Sequ
 
 
 def _is_unbound(group: Group) -> bool:
-    """Return whether the values of a group do not move a body."""
+    """Return whether a group's values are an IK goal or a pose without a body, which move nothing."""
     return group.kind == IK[0] or (group.kind == AFFINE[0] and group.body == _NO_BODY)
 
 

@@ -161,14 +161,14 @@ def _check_grabs(moving: Sequence[BodyState]) -> None:
 
 
 def _pairs(world: CollisionWorld, bodies: Bodies, body: BodyState) -> Ints:
-    """Return the collision pairs of a body's geoms, the smaller index first, shape (n, 2)."""
+    """Return the collision pairs of a body with others and itself, the smaller geom first, shape (n, 2)."""
     moved = bodies.moved(body)
     asked = body_and_others(world, body, moved), itself(world, body, moved)
     return np.sort(np.concatenate([np.stack([pairs.first, pairs.second], axis=1) for pairs in asked]), axis=1)
 
 
 def _chains(world: CollisionWorld, body: BodyState, bases: dict[BodyState, int]) -> list[tuple[int, Chain]]:
-    """Return the joints that move each geom of a body and its grabbed bodies; base motions come last."""
+    """Return each geom of a body and its grabbed bodies, with the joints that move it; base motions come last."""
     model, ids = world.model.model, world.model.part(body).body_ids
     base = (bases[body], bases[body] + 1) if body in bases else ()
     chains = [Chain((*joints_above(model, int(link)), *base)) for link in ids]

@@ -23,16 +23,16 @@ from ravemj.model.scene import Manipulator
 from ravemj.planning.space import Space
 
 _LINE_STEP = 0.01
-"""The spacing of tested poses on the straight approach to a grasp [m]."""
+"""Spacing of tested poses on the straight approach to a grasp [m]."""
 
 _IN_LIMITS = 1e-3
-"""The tolerance of the limits for values of a preshape [rad or m], as in OpenRAVE."""
+"""Amount by which values of a preshape may exceed the joint limits [rad or m], as in OpenRAVE."""
 
 _BACK = 1e-3  # m, step of a hand back out of the target, as in OpenRAVE
 _MOST_BACK = 300  # steps
 
 _POSES = ("grasptrans_nocol", "igrasptrans")
-"""Properties with the pose of the tool; the first has precedence."""
+"""Names of grasp table columns with the pose of the tool; the first has precedence."""
 
 
 class GraspTable(NamedTuple):
@@ -175,7 +175,7 @@ class GraspSearch:
                 yield grasp
 
     def _grasp(self, number: int) -> Grasp | None:
-        """Return a grasp if it is reachable, else None. The robot and the target are not restored."""
+        """Return the grasp of a table row if it is reachable, else None. Robot and target are not restored."""
         preshape = self._preshaped(number)
         if preshape is None:
             return None
@@ -189,7 +189,7 @@ class GraspSearch:
         return grasp if grasp.rows and (grasp.T_world_goals or not self._places) else None
 
     def _pose(self, number: int) -> Floats | None:
-        """Return ``T_target_tool`` of a row, simulated if the row has none; None if the simulation fails.
+        """Return ``T_target_tool`` of a table row, simulated if it has none; None if the simulation fails.
 
         After the simulation, the open hand is moved back until it does not touch the target.
         """
@@ -214,7 +214,7 @@ class GraspSearch:
         return inverse(target.T_world_target) @ T_world_base @ flying.T_base_tool
 
     def _preshaped(self, number: int) -> Floats | None:
-        """Move the gripper to the preshape of a grasp and return its values; None if they are outside the limits."""
+        """Move the gripper to the preshape of a table row, and return its values; None if they violate the limits."""
         body, dofs = self._hand.body, list(self._hand.arm.gripper_dofs)
         values = body.kinematics.values()
         if not dofs:
@@ -240,7 +240,7 @@ class GraspSearch:
         return _unit(direction)
 
     def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
-        """Return arm values from which the tool reaches a grasp along a straight line in the approach direction."""
+        """Return the arm's IK solutions at the start of the straight approach from which it reaches the grasp."""
         start = T_world_tool.copy()
         start[:3, 3] -= self._options.approachoffset * direction
         rows: list[Floats] = []

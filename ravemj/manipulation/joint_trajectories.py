@@ -31,7 +31,7 @@ _ROUNDING = 1e-4
 """Relative rounding tolerance of velocity and acceleration limits."""
 
 _REST = 1e-3
-"""Maximum speed at rest [rad/s or m/s]."""
+"""Speed that counts as rest [rad/s or m/s]."""
 
 _SHORT = 1e-6
 """Duration [s] below which derivatives of a segment are meaningless."""
@@ -179,7 +179,7 @@ def retimed(joints: Joints, rows: Floats) -> JointTrajectory:
 
 
 def _without_stops(rows: Floats, limits: segments.PathLimits) -> segments.Timed | None:
-    """Return a smooth motion through waypoints; None if it deviates too far from the straight lines between them."""
+    """Return a smooth motion through waypoints; None if it fails or deviates too far from straight lines."""
     try:
         timed = Spline().timed(rows, limits)
     except RetimingError:  # two rows, or a corner beyond a limit
@@ -233,7 +233,7 @@ def sampled(
 def _continuous(
     joints: Joints, waypoints: Waypoints, group: Group, find_body: FindBody
 ) -> list[tuple[float, float, Floats]]:
-    """Return start time, end time and coefficients of each segment, without jumps by full turns between them."""
+    """Return start time, end time and polynomial of each segment; jumps by full turns between them are removed."""
     pieces = [piece for piece in waypoints.pieces([group], find_body) if piece[1] - piece[0] > _SHORT]
     if not pieces:
         raise ArgumentError("the trajectory has no two waypoints at different times")

@@ -24,7 +24,7 @@ _JITTER_TRIES = 1000
 """Number of random configurations tested near a start or goal in collision."""
 
 _CLOSE = 1e-6
-"""Distance before a contact at which joints stop [rad or m]."""
+"""Distance from a contact at which closing joints stop [rad or m]."""
 
 
 def find_path(problem: Problem, search: Callable[[Problem], Search], spacing: float = 0.0) -> Search:
@@ -76,7 +76,7 @@ def _jittered_on(
     jitter: float,
     random: np.random.Generator,
 ) -> Floats | None:
-    """Return an allowed configuration on a constraint near ``configuration``; None if that violates the constraint."""
+    """Return an allowed configuration near ``configuration``; None if it violates the constraint or none is found."""
     if not manifold.has(configuration):
         return None
 
@@ -188,7 +188,7 @@ def move_until_contact(
 
 
 def _retreat(bodies: Bodies, values: Floats, joint: int, free: float, touches: Callable[[int], bool]) -> None:
-    """Set a joint to the last value without contact, by bisection between a free value and the current one."""
+    """Set a joint to the last value without contact, by bisection between ``free`` and the current value."""
     taken = float(values[joint])
     while abs(taken - free) > _CLOSE:
         values[joint] = middle = (taken + free) / 2

@@ -31,10 +31,10 @@ _TRIES = 100
 """OpenRAVE's default for the number of attempted shortcuts."""
 
 _TRIES_PER_LINE = 3
-"""Number of further attempts for each line of a path whose lines are kept."""
+"""Number of additional shortcut attempts for each straight line that the path must keep."""
 
 _DETOURS = 5
-"""Maximum number of lines of a path that are replaced by detours because they cannot be certified."""
+"""Maximum number of straight lines replaced by detours because they cannot be certified."""
 
 TOPP_RA = ("toppra", "toppratrajectoryretimer")
 
@@ -135,7 +135,7 @@ class Processor:
                 raise RetimingError(f"the trajectory has no group '{group.name}'")
 
     def _is_of_goals(self) -> bool:
-        """Return whether the path consists of tool poses; OpenRAVE retimes their numbers like joint values."""
+        """Return whether the path consists of IK goals; OpenRAVE retimes their numbers like joint values."""
         return all(group.name.startswith("ikparam_values") for group in self.groups)
 
     # Retimers
@@ -208,9 +208,9 @@ class Processor:
             raise RetimingError(str(error)) from None
 
     def _certified(self, motion: ShortenedMotion, edges: Edges, tries: int) -> Certificate | None:
-        """Certify a motion, without the shortcuts and lines that prevent it; return None if that fails.
+        """Certify a motion, after removing shortcuts and lines that cannot be certified; return None if that fails.
 
-        With a line, all shortcuts from it and to it are lost, so there are further attempts then.
+        Replacing a line removes the shortcuts that start or end on it, so new ones are attempted.
         """
         certifier = edges.certifier()
         if certifier is None or not motion.segments:

@@ -14,7 +14,7 @@ from ravemj.planning.edges import Allowed
 from ravemj.planning.space import Space
 
 _REMEMBERED = 200
-"""Maximum number of rejected configurations that are explained after a search."""
+"""Number of last rejected configurations that are explained after a search."""
 
 _MOST_REGIONS = 6
 """Maximum number of regions that a message describes one by one."""
@@ -230,7 +230,7 @@ def _described(conditions: Conditions, index: int) -> str:
 
 
 def _off(conditions: Conditions, off: float) -> str:
-    """Describe the violation of the constraint by its error norm ``off``."""
+    """Describe how far the tool violates the constraint; ``off`` is the error norm."""
     manifold = conditions.manifold
     if manifold is None or off <= manifold.threshold:
         return "a constraint does not allow it"

@@ -18,7 +18,7 @@ MOST_DRAWS = 200
 """Maximum number of poses sampled from regions before a search."""
 
 _REPAIRS = 2
-"""Maximum number of IK solutions of a pose projected onto the constraint; each takes as long as hundreds of tests."""
+"""Maximum number of IK solutions per pose that are projected onto the constraint; each costs hundreds of tests."""
 
 Refuse = Callable[[Floats], RefusedError | None]
 """Returns the reason why a configuration cannot be a start or goal, or None."""
@@ -154,7 +154,7 @@ class RegionRoots:
         return same[0] if same else -1
 
     def _draw(self, refuse: Refuse, region: int | None = None) -> list[Floats]:
-        """Sample a pose of a region; return its roots in random order."""
+        """Sample a pose of a region, by default a random one; return the allowed IK solutions in random order."""
         if region is None:
             region = int(self._random.choice(len(self._regions), p=self._weights))
         pose = self._regions[region].sample(self._random, 1, over_rotations=True)[0]

@@ -230,7 +230,7 @@ class Moving:
         return distance, " and ".join(body.scene.links[link].name for body, link in owners)
 
     def _near(self, keeper: Keeper) -> list[tuple[float, tuple[tuple[BodyState, int], tuple[BodyState, int]], Floats]]:
-        """Return for each near pair the distance, both links, and the segment between them, shape (6,)."""
+        """Return distance, both links and the connecting segment, shape (6,), of each pair of geoms near each other."""
         world, pairs = keeper.pairs()
         near: list[tuple[float, tuple[tuple[BodyState, int], tuple[BodyState, int]], Floats]] = []
         for number in np.flatnonzero(pairs.gaps() < keeper.seen).tolist():
@@ -259,7 +259,7 @@ class Moving:
 
 
 def _carrier(robot: BodyState, body: BodyState, link: int) -> int | None:
-    """Return the robot's link that moves a link of a body: its own, or the grabbing link; else None."""
+    """Return the robot's link that moves ``link`` of ``body``: itself, or the link that grabs the body; else None."""
     if body is robot:
         return link
     return next((grab.link for grab in robot.grabs if grab.body.carries(body)), None)
@@ -276,7 +276,7 @@ def _weight(body: BodyState) -> tuple[float, Floats]:
 
 
 def _angular(affine: int, axis: Vec3) -> Floats:
-    """Return the angular velocity directions of affine DOFs as columns, shape (3, 0, 1 or 3)."""
+    """Return the rotation axes of a base's affine DOFs as columns, shape (3, 0, 1 or 3)."""
     if affine & int(DOFAffine.RotationAxis):
         return np.array(axis).reshape(3, 1) / np.linalg.norm(axis)
     return np.eye(3) if affine & _ROTATION else np.zeros((3, 0))

@@ -18,10 +18,10 @@ from ravemj.planning.projection import PROJECTION_STEPS, Error, project
 from ravemj.planning.space import Space
 
 _PROJECTED = 0.1
-"""Error norm at which projections stop, as a fraction of the threshold."""
+"""Error norm at which a projection onto the constraint stops, as a fraction of the constraint's threshold."""
 
 _INSIDE = 0.5
-"""Fraction of the threshold above which the error norm of a configuration is reduced by projection."""
+"""Error norm above which a configuration is projected onto the constraint, as a fraction of its threshold."""
 
 _DETOUR = 0.8
 """Maximum length of each half of a projected edge, relative to the edge; a longer half is a jump on the constraint."""
@@ -124,13 +124,13 @@ class ConstrainedEdges(Edges):
         return np.array([points[part] for part in sorted(points)])
 
     def _is_straight(self, start: Floats, end: Floats) -> bool:
-        """Return whether a straight line keeps the constraint and is not longer than the resolution of edge tests."""
+        """Return whether a straight line is a single step of edge tests, and its middle keeps the constraint."""
         step = self.space.difference(end, start)
         most = max(_INSIDE * self._manifold.threshold, self._manifold.off(start), self._manifold.off(end))
         return self.space.steps(step) == 1 and self._manifold.off(start + step / 2) <= most
 
     def _middle(self, start: Floats, end: Floats) -> Floats | None:
-        """Return the projected middle of an edge, or None if it is not near both ends."""
+        """Return the middle of an edge, projected onto the constraint; None if that fails or leads far away."""
         step = self.space.difference(end, start)
         middle = self.onto(start + step / 2)
         farther = max(self._far(start, middle), self._far(middle, end))

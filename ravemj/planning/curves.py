@@ -107,14 +107,14 @@ def path_curves(points: Floats, differences: Callable[[Floats, Floats], Floats])
 
 
 def _bernstein(number: int, part: float) -> Floats:
-    """Return the Bernstein polynomials of the control points at a fraction of the duration."""
+    """Return the values of the ``number`` Bernstein polynomials at a fraction ``part`` of the duration."""
     powers = range(number)
     return np.array([math.comb(number - 1, k) * part**k * (1 - part) ** (number - 1 - k) for k in powers])
 
 
 @cache
 def _from_powers(number: int) -> Floats:
-    """Return the matrix that converts power coefficients to control points."""
+    """Return the matrix that converts the power coefficients of a curve to its Bézier control points."""
     rows = [[math.comb(row, power) / math.comb(number - 1, power) for power in range(number)] for row in range(number)]
     return np.array(rows)
 
@@ -132,7 +132,7 @@ def _weights(number: int, start: float, end: float) -> Floats:
 
 @cache
 def _subdivision(number: int, parts: int) -> Floats:
-    """Return the matrices of ``_weights`` for equal parts, shape (parts, number, number)."""
+    """Return the matrices from a curve's control points to those of equal parts, shape (parts, number, number)."""
     return np.array([_weights(number, part / parts, (part + 1) / parts) for part in range(parts)])
 
 

@@ -12,7 +12,6 @@ AROUND = 0.3
 """Maximum distance of a detour from the line in each coordinate; weighted."""
 
 _ITERATIONS = 200
-"""Maximum number of iterations of the search for a detour."""
 
 
 def certified_detour(edges: Edges, proof: Proof, part: Floats, random: np.random.Generator) -> Floats | None:

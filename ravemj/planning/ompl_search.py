@@ -18,7 +18,7 @@ Ompl = Any
 """Object of OMPL, which has no type annotations."""
 
 _PATIENCE = 0.02
-"""Interval [s] between checks of the budget for planners that do not call it themselves."""
+"""Interval [s] between checks of the budget, for planners that do not call the termination condition themselves."""
 
 _NO_SETTINGS = ("up", "name")
 """OMPL methods ``setup`` and ``setName`` that do not set parameters."""
@@ -129,7 +129,7 @@ def _nearest(space: Space, configurations: Sequence[Floats], configuration: Floa
 
 
 def _apply(solver: Ompl, settings: Mapping[str, str]) -> None:
-    """Set the parameters of a planner by their setters, as ``goal_bias`` by ``setGoalBias``, to numbers or booleans."""
+    """Set OMPL parameters by their setters, as ``goal_bias`` by ``setGoalBias``, parsed as numbers or booleans."""
     for name, text in settings.items():
         setter = getattr(solver, "set" + "".join(map(str.capitalize, name.split("_"))), None)
         if name in _NO_SETTINGS or setter is None:
@@ -173,11 +173,11 @@ class _Questions:
         return self.safely(lambda: self._edges.space.outside(values) is None and self._edges.allowed(values))
 
     def line(self, start: Floats, end: Floats) -> bool:
-        """Return whether a line is allowed."""
+        """Return whether the line between two configurations is allowed."""
         return self.safely(lambda: self._edges.line(start, self._edges.space.difference(end, start)))
 
     def is_over(self) -> bool:
-        """Return whether the search must end."""
+        """Count one iteration; return whether the search must end."""
 
         def proceeds() -> bool:
             self.end = self._budget.end(self.count)

@@ -19,10 +19,10 @@ _DAMPING = 1e-8
 """Constant part of the damping, which keeps steps finite if the Jacobian is rank-deficient."""
 
 _STEP = 0.1
-"""Maximum length of a step of a descent [rad or m]."""
+"""Maximum length of a step of the iterative projection [rad or m]."""
 
 _PATIENCE = 30
-"""Maximum number of consecutive steps of a descent that do not reduce the error."""
+"""Maximum number of consecutive steps of a projection that do not reduce the error."""
 
 
 def damped_step(error: Floats, jacobian: Floats) -> Floats:
@@ -87,6 +87,6 @@ def _random_steps(edges: Edges, here: Floats, random: np.random.Generator, tries
 
 
 def _bounded(space: Space, here: Floats, step: Floats) -> Floats:
-    """Return the end of a step from ``here``, clipped to the maximum length and the limits."""
+    """Return the configuration after a step from ``here``, shortened to ``_STEP`` and clipped to the limits."""
     far = float(np.linalg.norm(step))
     return space.clamp(here + (step * (_STEP / far) if far > _STEP else step))

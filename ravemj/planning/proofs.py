@@ -114,7 +114,7 @@ class Cases(NamedTuple):
 
 
 class _Examined(NamedTuple):
-    """Test results of intervals: lower bounds of the distances of pairs that are proven [m], and what is undecided."""
+    """Test results of intervals: proven lower bounds of pair distances [m], and undecided spans."""
 
     intervals: Intervals
     cases: Cases
@@ -124,7 +124,7 @@ class _Examined(NamedTuple):
 
 
 class _Proved(NamedTuple):
-    """Proven interval of a motion: its least lower bound of a distance [m], lower bounds for its pairs [m]."""
+    """Interval of a motion without collisions: lower bounds of the distances of pairs [m], and their minimum."""
 
     least: float
     times: Floats
@@ -203,7 +203,7 @@ def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> 
 
 
 def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_start: bool) -> list[float]:
-    """Return for each pair the time [s] nearest to start or end at which its distance reaches ``APART``."""
+    """Return the time [s] at which each pair's distance first reaches ``APART``, searched from start or end."""
     begin, finish = curves[0].start, curves[-1].end
     times = np.linspace(begin, finish, _SEARCH + 1) if is_start else np.linspace(finish, begin, _SEARCH + 1)
     times_apart, left = np.full(len(pairs), times[-1]), np.ones(len(pairs), dtype=bool)
@@ -217,7 +217,7 @@ def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_sta
 
 
 def _asked(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span]) -> tuple[Intervals, Cases]:
-    """Return the segments of a motion, divided where exempt spans start or end, and the pairs to test."""
+    """Return the segments of a motion, divided where exempt spans start or end, and the pairs to test in each."""
     cuts = sorted({time for span in exempt for time in (span.start, span.end)})
     pieces: list[Curve] = []
     for curve in curves:
@@ -238,7 +238,7 @@ def _without(spaces: Spaces, curve: Curve, exempt: Sequence[Span]) -> Bools:
 
 
 def _examined(spaces: Spaces, intervals: Intervals, cases: Cases) -> Iterator[_Examined]:
-    """Test intervals, and subdivide those without proof."""
+    """Test intervals for collisions, and subdivide undecided ones until they are too short."""
     while len(intervals.times):
         some, rest = intervals.only(slice(spaces.most)), intervals.only(slice(spaces.most, None))
         now, later = cases.of_rows(0, spaces.most), cases.of_rows(spaces.most)
@@ -254,13 +254,13 @@ def _examined(spaces: Spaces, intervals: Intervals, cases: Cases) -> Iterator[_E
 
 
 def _subdivided(intervals: Intervals, cases: Cases, left: Ints, shares: Floats) -> tuple[Intervals, Cases]:
-    """Subdivide the intervals of the cases ``left``.
+    """Subdivide the intervals of the undecided cases.
 
     Args:
         intervals: The intervals.
-        cases: The cases.
+        cases: Combinations of interval and pair.
         left: Indices of the undecided cases.
-        shares: Their travel as a multiple of the gap.
+        shares: Travel of each undecided pair during its interval, as a multiple of the gap between its geoms.
     """
     largest = np.zeros(len(intervals.times))
     np.maximum.at(largest, cases.rows[left], shares)
@@ -285,7 +285,7 @@ def _note_nearest(proof: Proof, spaces: Spaces, intervals: Intervals, cases: Cas
 
 
 def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof) -> None:
-    """Subdivide the intervals with the smallest bounds until the lower bound is close to the measured distance."""
+    """Set ``proof.smallest_gap`` near the smallest measured distance, by subdividing the critical intervals."""
     proved, rest = _smallest(every)
     for _ in range(_REFINEMENTS):
         wanted = proof.nearest[0] - max(_TOLERANCE, _PART * proof.nearest[0])
@@ -313,7 +313,7 @@ def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
 
 
 def _raised(spaces: Spaces, near: Sequence[_Proved], wanted: float, proof: Proof) -> list[_Proved]:
-    """Return the parts of intervals, with better lower bounds for pairs whose bounds are below ``wanted`` [m]."""
+    """Return the parts of intervals, with new lower bounds for pairs whose bounds are below ``wanted`` [m]."""
     whole = Intervals(np.array([interval.times for interval in near]), np.array([each.control for each in near]))
     parts, origins = whole.parts(np.full(len(near), _CUTS))
     known = np.full((len(origins), spaces.pair_count), np.inf)
@@ -329,7 +329,7 @@ def _raised(spaces: Spaces, near: Sequence[_Proved], wanted: float, proof: Proof
 
 
 def _joined(spans: list[Span]) -> list[Span]:
-    """Merge consecutive spans of one pair; return all in the order of time."""
+    """Merge adjacent or overlapping time spans of the same pair; return all spans in the order of time."""
     joined: list[Span] = []
     for span in sorted(spans, key=lambda span: (span.pair, span.start)):
         if joined and joined[-1].pair == span.pair and span.start <= joined[-1].end + 1e-9:

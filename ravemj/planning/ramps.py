@@ -11,7 +11,6 @@ import numpy as np
 from ravemj.core.transforms import Floats
 
 _ROUNDING = 1e-9
-"""Relative rounding tolerance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +78,7 @@ def shortest_ramps(steps: Floats, start: Floats, end: Floats, speed: Floats, acc
 
 
 def _one_way(steps: Floats, start: Floats, end: Floats, speed: Floats, acceleration: Floats) -> Floats:
-    """Return the times of motions that accelerate to a peak and decelerate; infinite if there is no such peak."""
+    """Return times of motions that accelerate to a positive peak velocity and decelerate; infinite if impossible."""
     with np.errstate(divide="ignore", invalid="ignore"):
         square = acceleration * steps + (start**2 + end**2) / 2
         peak = np.sqrt(np.maximum(square, 0.0))

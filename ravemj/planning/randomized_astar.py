@@ -13,16 +13,16 @@ from ravemj.planning.edges import Edges
 from ravemj.planning.rrt import Budget, End, Search, SearchTree, without_repetitions
 
 _STEP = 0.3
-"""Distance of sampled neighbours [rad or m]."""
+"""Distance between a node and its sampled neighbours [rad or m]."""
 
 _REACH = 1.0
-"""Maximum length of a line to a goal [rad or m]."""
+"""Maximum length of an edge to a goal [rad or m]."""
 
 _APART = 0.5
-"""Minimum distance of two configurations, as a fraction of ``_STEP``."""
+"""Minimum distance between nodes, as a fraction of ``_STEP``."""
 
 _NEIGHBOURS = 8
-"""Number of neighbours tested per expansion."""
+"""Number of neighbours sampled per expansion of a node."""
 
 
 def search_by_cost(

@@ -80,17 +80,16 @@ _PATIENCE = 20
 """Number of consecutive failures to grow the smaller tree after which the other tree grows."""
 
 _WHOLE_LINES = 50
-"""Number of blocked edges that are discarded before trees keep the steps before an obstacle.
+"""Number of blocked edges after which trees keep the part of an edge before an obstacle, instead of discarding it.
 
-In open space, trees of long complete edges connect sooner, since a blocked edge takes few tests. Narrow passages
-need steps.
+In open space, trees of long edges connect sooner, since a blocked edge takes few tests. Narrow passages need steps.
 """
 
 _WHOLE_LENGTH = 0.15
-"""Maximum length of a complete edge, relative to the diagonal of the space."""
+"""Maximum length of an edge added as a whole, relative to the diagonal of the space."""
 
 _LONGEST = 4.0
-"""Maximum length of a complete edge, a weighted distance: OpenRAVE's 100 steps of 0.04."""
+"""Maximum length of an edge added as a whole, a weighted distance: OpenRAVE's 100 steps of 0.04."""
 
 _TURN = 1e-6
 """Maximum difference of the unit directions of two collinear edges."""
@@ -225,7 +224,7 @@ def connect(
 
 
 class _TreeGrowth:
-    """Growing trees from starts and goals."""
+    """Bidirectional search: trees that grow from the starts and from the goals."""
 
     def __init__(self, edges: Edges, starts: Sequence[Floats], goals: Sequence[Floats]) -> None:
         self._edges = edges
@@ -241,7 +240,7 @@ class _TreeGrowth:
             self._roots[side].append(self.trees[side].add(root))
 
     def straight(self, starts: Sequence[Floats], goals: Sequence[Floats]) -> Search | None:
-        """Return a path of a single edge, or None; the nearest pairs of start and goal are tried first."""
+        """Return a path of one edge from a start to a goal, nearest pairs first; None if all edges are blocked."""
         space = self._edges.space
         pairs = [(space.distance(goal, start), s, g) for s, start in enumerate(starts) for g, goal in enumerate(goals)]
         for _, start, goal in sorted(pairs)[:_MOST_LINES]:
@@ -250,7 +249,7 @@ class _TreeGrowth:
         return None
 
     def grow(self, target: Floats, iteration: int) -> Search | None:
-        """Grow the smaller tree towards a configuration, and the other tree to the new node; return a path, or None."""
+        """Grow the smaller tree towards a configuration and the other to its new node; return a path if they meet."""
         near, far = self.trees[self._grown], self.trees[1 - self._grown]
         whole = self._lines_blocked < _WHOLE_LINES
         longest = self._longest if whole else LINE
@@ -316,7 +315,7 @@ def explore(
 def _extend(
     edges: Edges, tree: SearchTree, target: Floats, *, longest: float = LINE, whole: bool = False
 ) -> tuple[int | None, bool]:
-    """Grow a tree towards a configuration by one edge.
+    """Grow a tree by an edge from its nearest node towards a configuration.
 
     Returns:
         The last new node, or None if the first step is blocked; and whether the edge is blocked.
@@ -328,7 +327,7 @@ def _extend(
 
 
 def _reach(edges: Edges, tree: SearchTree, target: Floats, *, whole: bool = False) -> int | None:
-    """Grow a tree to a configuration, edge by edge; return the node there, or None if an edge is blocked."""
+    """Grow a tree edge by edge until it contains ``target``; return that node, or None if an edge is blocked."""
     nearest = tree.nearest(target)
     while True:
         grown = edges.grow(tree.node(nearest), target, whole=whole)

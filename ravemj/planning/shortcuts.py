@@ -17,7 +17,7 @@ from ravemj.planning.retiming.segments import PathLimits
 from ravemj.planning.space import Space
 
 _WORTH = 3e-3
-"""Minimum saving of a shortcut, as a fraction of the path length, because collision checks dominate the time."""
+"""Minimum saving of a shortcut, as a fraction of the path length; smaller ones are not worth their collision checks."""
 
 _MOST_ENDS = 32
 """Maximum number of waypoints to which a straight line from one waypoint is tried."""
@@ -76,9 +76,9 @@ def straightened(edges: Edges, points: Floats) -> Floats:
 
 
 def _without_detours(edges: Edges, path: Floats) -> Floats:
-    """Return the path without detours: each waypoint is followed by the last one that a straight line reaches.
+    """Return the path in which each waypoint is followed by the last one reachable by a straight line.
 
-    If there are many waypoints, ``_MOST_ENDS`` of them are tried.
+    At most ``_MOST_ENDS`` later waypoints are tested.
     """
     kept, last = [0], len(path) - 1
     while kept[-1] < last:
@@ -90,10 +90,10 @@ def _without_detours(edges: Edges, path: Floats) -> Floats:
 
 
 _STRAIGHT = 1e-12
-"""1 minus the cosine of the largest angle between lines that count as one."""
+"""1 minus the cosine of the largest angle between two lines that count as collinear."""
 
 _WORTH_TIME = 1e-3
-"""Minimum saving of a shortcut, as a fraction of the duration."""
+"""Minimum time saved by a shortcut, as a fraction of the duration of the part that it replaces."""
 
 _SAME_TIME = 1e-9
 """Tolerance of equal times of acceleration changes [s]."""
@@ -165,14 +165,14 @@ def _pieces(ramps: Ramps, spread: Callable[[Floats], Floats], origin: Floats) ->
 
 
 class _Place(NamedTuple):
-    """Position on a motion: a time [s] in a line or shortcut."""
+    """Point of a motion: a time [s] in the line or shortcut with the number ``source``."""
 
     source: int
     time: float
 
 
 class _Shortcut(NamedTuple):
-    """Shortcut between two places of a motion, and its segments, which have the same source number."""
+    """Shortcut between two points of a motion; its segments have a common source number."""
 
     start: _Place
     end: _Place
@@ -264,7 +264,7 @@ class ShortenedMotion:
         return True
 
     def _insert_all(self) -> None:
-        """Make the motion anew, without shortcuts whose start or end is no longer there."""
+        """Rebuild the motion from straight lines and shortcuts; drop shortcuts whose start or end no longer exists."""
         self.segments = self._straight
         self._shortcuts = [shortcut for shortcut in self._shortcuts if self._insert(shortcut)]
 
@@ -272,14 +272,14 @@ class ShortenedMotion:
         return np.cumsum([piece.duration for piece in self.segments])
 
     def _at(self, time: float, ends: Floats) -> tuple[_Place, tuple[Floats, Floats]]:
-        """Return the place, values and velocities at a time; ``ends`` are the end times of the segments."""
+        """Return the point of the motion at a time, with values and velocities; ``ends``: end times of the segments."""
         number = min(int(np.searchsorted(ends, time)), len(ends) - 1)
         piece = self.segments[number]
         after = time - (float(ends[number]) - piece.duration)
         return _Place(piece.source, piece.begins + after), piece.after(after)
 
     def _insert(self, shortcut: _Shortcut) -> bool:
-        """Replace the motion between two places by a shortcut; return False if a place is no longer on the motion."""
+        """Insert a shortcut into the motion; return False if its start or end is no longer on the motion."""
         first, second = self._find(shortcut.start), self._find(shortcut.end)
         if first is None or second is None or first > second:
             return False
@@ -291,7 +291,7 @@ class ShortenedMotion:
         return True
 
     def _find(self, place: _Place) -> int | None:
-        """Return the index of the segment that contains a place, or None."""
+        """Return the index of the segment that contains a point of the motion, or None."""
         for number, piece in enumerate(self.segments):
             since = place.time - piece.begins
             if piece.source == place.source and -_SAME_TIME <= since <= piece.duration + _SAME_TIME:
@@ -300,7 +300,7 @@ class ShortenedMotion:
 
 
 def _until_around(space: Space, values: Floats, points: Sequence[Floats], rows: Iterable[int]) -> tuple[int, Floats]:
-    """Follow a path up to a distance of ``AROUND``.
+    """Follow a path up to the distance ``AROUND`` from its start.
 
     Args:
         space: The configuration space.
@@ -309,8 +309,8 @@ def _until_around(space: Space, values: Floats, points: Sequence[Floats], rows: 
         rows: The indices of the next waypoints.
 
     Returns:
-        The index of the first waypoint that is farther away, and the configuration on the line to it; without one,
-        those of the last waypoint.
+        The index of the first waypoint beyond the distance, and the configuration at the distance on the line to it; if
+        all are nearer, index and configuration of the last waypoint.
     """
     row, before = -1, values
     for row in rows:

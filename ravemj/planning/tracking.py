@@ -13,7 +13,7 @@ LARGEST_JUMP = 0.5
 """Maximum joint step between consecutive goals [rad or m]; a larger one is a change of branch."""
 
 _FIRST_STEP = 1000.0
-"""Cost of the motion from the start to the first goal, so large that paths from the present configuration win."""
+"""Weight of the motion to the first goal, so large that paths near the present configuration win."""
 
 Solve = Callable[[int, Floats], Sequence[Floats]]
 """Function that returns configurations that reach a goal, given its index and a configuration to search near."""
@@ -23,7 +23,7 @@ Connects = Callable[[int, Floats, Floats], bool]
 
 
 class _Layer(NamedTuple):
-    """Layer of the planning graph: solutions of a goal, path costs, and predecessor indices in the layer before."""
+    """Layer of the planning graph: IK solutions of a goal, path costs, and parents' indices in the layer before."""
 
     rows: Floats
     costs: Floats

@@ -12,7 +12,7 @@ EXACT = 1e-9
 """Relative rounding tolerance of values, speeds and accelerations at their limits."""
 
 _ROUNDING = 1e-12
-"""Relative rounding error of values, which matters for their differences over short times."""
+"""Relative rounding error of values, subtracted from their differences over short times."""
 
 
 class Samples(NamedTuple):

@@ -108,7 +108,7 @@ class CollisionChecker(Interface):
         return True
 
     def _choose(self) -> None:
-        """Determine the contents of reports from the options."""
+        """Set the contents of collision reports from the checker's options."""
         options = CollisionOptions(self._options)
         listed: Listed = "links" if options & CollisionOptions.AllLinkCollisions else "first pair"
         self._wanted = Wanted(
@@ -223,7 +223,7 @@ class CollisionChecker(Interface):
         return thing
 
     def _active_links(self, argument: object) -> Links:
-        """Return the links that the option ``ActiveDOFs`` selects of a body; None means all."""
+        """Return the links to test if the option ``ActiveDOFs`` applies to a body; None means all."""
         if not self._options & _ACTIVE_DOFS or not isinstance(argument, KinBody) or argument.moves_as_a_whole():
             return None
         return MovedBy(argument.active_dofs())
@@ -273,7 +273,7 @@ class CollisionChecker(Interface):
             report.collisionInfos = [self._info(findings.nearest, collides=False)]
 
     def _counts(self, collision: Collision) -> bool:
-        """Ask the registered callbacks whether a collision counts."""
+        """Return whether no registered callback ignores a collision."""
         report = self.report(Findings([collision], FAR, None, 0))
         return all(callback(report, False) != CollisionAction.Ignore for callback in self._env.collision_callbacks)
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 _LOG = logging.getLogger("ravemj")
 
 _POLL = 1e-3
-"""Polling interval [s] of the controller: short against a time step of 10 ms, and negligible load for a core."""
+"""Polling interval [s] of a waiting controller: short compared with a time step of 10 ms, without noticeable load."""
 
 
 def wait_until(is_done: Callable[[], bool], timeout: float, lock: StateLock, is_running: Callable[[], bool]) -> bool:
@@ -190,7 +190,7 @@ class Controller(Interface):
 
 
 _SLACK = 1e-6
-"""Tolerance of the velocity limits [rad or m per step]; the number is OpenRAVE's."""
+"""Amount by which a time step may exceed the velocity limits [rad or m per step]; the number is OpenRAVE's."""
 
 
 class _Path(NamedTuple):
@@ -331,7 +331,7 @@ class IdealController(Controller):
             self._desired, self._is_done = None, True
 
     def _play(self, path: _Path, timestep: float) -> None:
-        """Set the values of the path at the controller's time, then advance that time.
+        """Move the robot to the path's point at the controller's time, then advance that time.
 
         In this order, as in OpenRAVE, the first step sets the first waypoint.
         """
@@ -360,7 +360,7 @@ class IdealController(Controller):
             robot.Grab(body, robot.GetLinks()[change.link])
 
     def _show(self, path: _Path, time: float, elapsed: float) -> None:
-        """Set the configuration of a path at a time [s] from its start; see ``_place``."""
+        """Move the robot to the point of a path at a time [s] from its start; ``elapsed`` is that of ``_place``."""
         point = path.trajectory.Sample(time)
         T_world_base = None
         if path.moves_base:
@@ -369,7 +369,7 @@ class IdealController(Controller):
         self._place(path.dofs, point[path.columns], T_world_base, elapsed)
 
     def _place(self, dofs: Ints, values: Floats, T_world_base: Floats | None, elapsed: float = 0.0) -> None:
-        """Set joint values and the pose of the base, if there is one, with all velocities zero.
+        """Set joint values and, unless None, the pose of the base; all velocities become zero.
 
         ``elapsed`` is the duration of the motion, for the velocity limits [s]; 0 allows any speed.
         """
@@ -407,7 +407,7 @@ class IdealController(Controller):
             self._complain(f"moves joint '{joint.GetName()}' by {moved[first]:.6g}; its speed limit is {allowed}")
 
     def _complain(self, problem: str) -> None:
-        """Log a problem, or raise an error after ``SetThrowExceptions 1``."""
+        """Log the first problem of a path, or raise an error after ``SetThrowExceptions 1``."""
         message = f"robot '{self._robot.GetName()}' {problem} (controller time {self._time:g} s)"
         if self._throws_exceptions:
             self.Reset()
@@ -484,7 +484,7 @@ class VelocityController(Controller):
 
 
 class _PathPart(NamedTuple):
-    """Controller of a ``MultiController``, and the indices of its values among all values."""
+    """One controller of a ``MultiController``, and the indices of its DOFs in the values of all controllers."""
 
     controller: Controller
     places: Ints

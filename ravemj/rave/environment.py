@@ -54,7 +54,7 @@ _QUICK = 1  # zlib's fastest level shrinks meshes to a third, in 17 ms for a PR2
 
 
 class _RobotRecord(NamedTuple):
-    """Settings of a robot, as ``Robot.take_choices`` copies them."""
+    """Settings of a robot that ``Environment.CloneSelf`` copies."""
 
     active_choice: ActiveChoice
     affine_kinds: dict[str, AffineKind]

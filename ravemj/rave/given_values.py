@@ -14,7 +14,7 @@ from ravemj.model.scene import KinBody
 from ravemj.rave.enums import CheckLimitsAction
 
 _VALUE_ROUNDING = 2e-10
-"""Tolerance of limits [rad or m], which is OpenRAVE's: a value this far outside is clamped without a warning."""
+"""Amount by which values may exceed joint limits without a warning when clamped [rad or m]; OpenRAVE's."""
 
 _VELOCITY_ROUNDING = 1e-10
 """Tolerance of velocity limits [rad/s or m/s]."""

@@ -36,7 +36,7 @@ from ravemj.trajectories.bodies import body_groups
 _POSE = IkParameterizationType.Transform6D
 
 _BLOCK = 64
-"""Number of candidates per task of a worker process."""
+"""Number of candidate grasps per task of a worker process."""
 
 _ARROW = 0.035
 """Length of the arrow of a contact [m]."""
@@ -146,7 +146,7 @@ def _searched(query: _Query, processes: int) -> list[Grasp]:
 
 
 def _tried_part(content: bytes, span: tuple[int, int]) -> list[Grasp]:
-    """Test a range of candidates in a worker process."""
+    """Test a range of candidate grasps in a worker process; ``content`` is the pickled query."""
     query = _unpickled(content)
     with query.robot.GetEnv():
         return query.run(span)
@@ -188,7 +188,7 @@ def draw_grasp(body: KinBody, grasp: Grasp) -> list[GraphHandle]:
 
 
 def _radius(body: KinBody) -> float:
-    """Return the radius of a sphere around a body [m]: arrows of this length stick out of it."""
+    """Return the radius of a sphere around a body [m], the length of arrows that stick out of it."""
     return float(np.linalg.norm(body.ComputeAABB().extents()))
 
 
@@ -230,7 +230,7 @@ def _checked(method: str, friction: float, delta: float, rolls: int | None) -> C
 
 
 def _reach(robot: Robot, arm: Manipulator) -> Reach | None:
-    """Return the function that solves inverse kinematics without collisions; None for a hand without an arm."""
+    """Return a function that solves IK regardless of collisions; None if the hand has no arm."""
     if not arm.GetArmDOF():
         return None
     from ravemj.ik.candidates import ranked  # noqa: PLC0415 - slow to import

@@ -40,7 +40,7 @@ _ANGLES = {
     _Type.TranslationYAxisAngleXNorm4D: "heading of the direction about x, from y",
     _Type.TranslationZAxisAngleYNorm4D: "heading of the direction about y, from z",
 }
-"""Goal types that consist of a point and an angle."""
+"""Goal types that consist of a point and an angle, and descriptions of the angles."""
 
 _ROTATION_SIZES = {
     _Type.Transform6D: 4,
@@ -51,7 +51,7 @@ _ROTATION_SIZES = {
     _Type.TranslationLocalGlobal6D: 3,
     **dict.fromkeys(_ANGLES, 1),
 }
-"""Number of values that OpenRAVE stores in place of the quaternion, by goal type; 0 for other types."""
+"""Number of values of a goal that OpenRAVE stores in place of its quaternion, by goal type; 0 for other types."""
 
 _SET = """Set the goal to a point and the {angle}.
 
@@ -62,7 +62,7 @@ Args:
 
 
 def _with_angles(goals: type["GoalValues"]) -> type["GoalValues"]:
-    """Add bodies and docstrings to the point-and-angle methods, of which only the signatures are written."""
+    """Class decorator that implements and documents the point-and-angle methods, written as signatures only."""
     for kind, angle in _ANGLES.items():
         set_, get = (getattr(goals, f"{verb}{kind.name}") for verb in ("Set", "Get"))
         set_.__doc__, get.__doc__ = _SET.format(angle=angle), "Return the point [m], shape (3,), and the angle [rad]."
@@ -98,7 +98,7 @@ class GoalValues(ApiObject):
         self._type = kind
 
     def _of(self, kind: IkParameterizationType) -> Floats:
-        """Return the values of a goal type.
+        """Return the goal as values of another goal type.
 
         OpenRAVE stores a goal of any type as a quaternion and a point, and reads the values of any type from these.
         """
@@ -218,7 +218,7 @@ class GoalValues(ApiObject):
 
 
 _CUSTOM_DATA = 0x10000
-"""Bit of the type number in the text form of a goal with custom data."""
+"""Bit of the type number that marks custom data in the text form of a goal."""
 
 
 class IkParameterizationData(GoalValues):

@@ -53,7 +53,7 @@ _ACTIONS = {
     Reason.COLLISION: (IkReturnAction.RejectEnvCollision, "collision"),
     Reason.END_COLLISION: (IkReturnAction(0x83), "collision"),
 }
-"""OpenRAVE's code for each reason, and the description of the failure."""
+"""OpenRAVE's action code and a description for each reason to reject a solution."""
 
 FilterAnswer = IkReturnAction | IkReturn | None
 FilterFunction = Callable[[Floats, "Manipulator", IkParameterization], FilterAnswer]
@@ -163,10 +163,10 @@ class FilteredSearch(ArmSearch):
         return True
 
     def _asked(self, filter_: Filter, row: Floats) -> IkReturn | None:
-        """Call a filter with the joint values ``row``, and return its answer.
+        """Call a user filter with the joint values ``row``, and return its answer.
 
         Raises:
-            RavemjError: with the code ``Assert``, the filter raised an exception or returned an invalid answer.
+            RavemjError: with the code ``Assert``, if the filter raised an exception or returned an invalid answer.
         """
         try:
             said: Any = filter_.function(row.copy(), self._manip, IkParameterization(self._goal_of_users))

@@ -188,8 +188,6 @@ class TactileSensorData(SensorData):
 
 
 class _ActuatorState(NamedInt):
-    """Motion state of an actuator."""
-
     Undefined = 0
     Idle = 1
     Moving = 2
@@ -429,7 +427,7 @@ class Instrument:
         return JointEncoderSensorData(stamp, self._noisy(values), velocities, steps)
 
     def _physics(self) -> "Physics | None":
-        """Return the physics of the present bodies, or None without simulated dynamics."""
+        """Return the simulated dynamics of the present bodies; None if the physics engine does not simulate them."""
         physics = self._env.GetPhysicsEngine().dynamics
         if physics is not None:
             physics.prepare()

@@ -194,7 +194,6 @@ class EnvironmentPart(ApiObject):
         return cast("Environment", self)
 
     def _check_alive(self) -> None:
-        """Raise an error if the environment has been destroyed."""
         if self._is_destroyed:
             raise RavemjError(f"{self!r} is destroyed; make a new Environment", ErrorCode.InvalidState)
 
@@ -326,7 +325,6 @@ class Interface(ReadableInterface):
         raise RavemjError(message + ", ".join(["help", *commands]), ErrorCode.CommandNotSupported)
 
     def _known_commands(self) -> Mapping[str, Command]:
-        """Return the command handlers by name."""
         return {name: partial(run, self) for name, run in self._commands.items()}
 
     def _help(self) -> str:

@@ -309,14 +309,13 @@ class Joint(Member):
     UpdateAndGetInfo = GetInfo
 
     def _shown_values(self) -> list[float]:
-        """Return the joint values; for a body outside of an environment, those of its link poses."""
+        """Return the joint values; if the body is outside of an environment, they are measured from the link poses."""
         if self._state.index:
             return self.GetValues().tolist()
         parent, child = (pose_of(self._state.link_transform(i)) for i in (self._scene.parent, self._scene.child))
         return list(measured_values(self._scene, parent.inverse() @ child))
 
     def _repr_html_(self) -> str:
-        """Return the table that notebooks show for a joint."""
         from ravemj.rave.tables import joint_table  # noqa: PLC0415 - html is slow to import
 
         return joint_table(self)
@@ -485,10 +484,10 @@ class Joint(Member):
         self._set_axes("SetResolution", resolution=[resolution] * len(self._scene.axes))
 
     def _axis(self, axis: int) -> scene.Axis:
-        """Return one axis.
+        """Return an axis of the joint.
 
         Raises:
-            IndexError: the joint has no such axis.
+            IndexError: the joint has no axis with this index.
         """
         checked_indices([axis], len(self._scene.axes), "axis")
         return self._scene.axes[axis]

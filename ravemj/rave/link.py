@@ -125,7 +125,7 @@ class Link(Member):
         return self._scene.inertial
 
     def _answer(self, value: ArrayLike) -> Floats:
-        """Return a mass, centre or inertia; NaN if OpenRAVE's formulas are undefined."""
+        """Return a mass, centre of mass or inertia; NaN if OpenRAVE's formulas for it are undefined."""
         return np.where(self._inertial.undefined, np.nan, value)
 
     def GetMass(self) -> float:
@@ -358,7 +358,7 @@ class Link(Member):
 
     @property
     def _groups(self) -> dict[str, tuple[scene.Geometry, ...]]:
-        """All groups, including the link's own geometries."""
+        """Return all geometry groups by name, including the link's own geometries."""
         return {scene.OWN_SHAPES: self._scene.geometries} | dict(self._scene.groups)
 
     def _group(self, name: str) -> tuple[scene.Geometry, ...]:

@@ -34,7 +34,7 @@ class Member(ApiObject):
     @property
     @abstractmethod
     def _scene(self) -> scene.Link | scene.Joint:
-        """The current description in the scene."""
+        """Description of the link or joint in the present scene."""
 
     def _gone(self, kind: str) -> RavemjError:
         """Return the error for a link or joint that no longer exists, since the body was initialized again."""
@@ -131,7 +131,7 @@ class Member(ApiObject):
 
 
 def _chosen(arrays: dict[str, Any], name: str | None, index: int) -> Any:  # noqa: ANN401 - floats or integers
-    """Return all arrays, the array of a name, or one of its elements; None for an unknown name."""
+    """Return all arrays if ``name`` is None, else the named array or one element; None for an unknown name."""
     if name is None:
         return arrays
     array = arrays.get(name)

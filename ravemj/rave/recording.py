@@ -157,7 +157,7 @@ def lowest_of_motion(env: "Environment", motion: BodyMotion) -> float:
 
 
 def _along(motion: BodyMotion) -> Iterator[None]:
-    """Set the bodies to some configurations along a motion, one per iteration; restore them at the end."""
+    """Move the bodies to evenly spaced times of a motion, one per iteration, and restore them at the end."""
     before = [(body, body.pose(), body.kinematics.values()) for body in motion.bodies]
     for time in np.linspace(0.0, motion.duration, _POSES_FOR_THE_VIEW):
         motion.place(float(time))
@@ -211,7 +211,7 @@ def animate(  # noqa: PLR0913 - those of ``Environment.animation``
 
 
 def _recorded(env: "Environment", bodies: Sequence[BodyState], motion: BodyMotion | None, fps: float) -> Recording:
-    """Play a motion, and return the recorded poses of all geoms."""
+    """Play a motion and record the poses of all bodies at each frame; without motion, one frame."""
     rows: list[tuple[Floats, Floats, Floats]] = []
     for time in [0.0] if motion is None else motion.frame_times(fps):
         if motion is not None:

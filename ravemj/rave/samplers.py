@@ -154,7 +154,7 @@ class _Random:
     """Independent, uniformly distributed samples of the standard Mersenne Twister, seeded as in OpenRAVE."""
 
     kinds = frozenset(SampleDataType)
-    """The kinds of numbers."""
+    """Kinds of numbers that the sampler generates."""
 
     def __init__(self) -> None:
         self._generator = np.random.RandomState()  # newer generators seed in another way
@@ -174,12 +174,12 @@ class _Random:
         self._generator.seed(seed)
 
     def reals(self, count: int) -> Floats:
-        """Return the next points, shape (count, dof)."""
+        """Return the next ``count`` samples, shape (count, dof)."""
         lower, upper = self.limits()
         return lower + (upper - lower) * (self.integers(count) / 2**32)
 
     def integers(self, count: int) -> NDArray[np.uint32]:
-        """Return the next points as integers, shape (count, dof)."""
+        """Return the next ``count`` samples as integers, shape (count, dof)."""
         return self._generator.randint(0, 2**32, (count, self.dof()), dtype=np.uint32)
 
 

@@ -86,7 +86,7 @@ class DescribedSensor(Interface):
         """Handle a new pose of a sensor without a robot."""
 
     def _take_over(self) -> None:
-        """Restart after a change of the constant properties."""
+        """Restart after a change of the sensor's constant properties."""
 
     def take_state(self, other: "DescribedSensor") -> None:
         """Copy the state of another sensor of the same kind."""
@@ -234,7 +234,7 @@ _DRAWN: Mapping[SensorCommand, tuple[type, ...]] = MappingProxyType(
         SensorCommand.RenderGeometryOn: (scene.Laser, scene.FlashLidar, scene.Intrinsics),
     }
 )
-"""Devices whose measurements, and devices whose geometry, viewers can draw."""
+"""Device classes that viewers can draw, by command: for their measurements, and for their geometry."""
 
 _OFF = 1
 """Offset from the number of an "on" command to that of its "off" command."""
@@ -242,7 +242,7 @@ _OFF = 1
 _SWITCH_BITS = 0x30  # the bits of a command's number that select what it switches
 
 _SLACK = 1e-9
-"""Tolerance of the measurement time [s], for rounding errors in the sum of many time steps."""
+"""Time by which a measurement may be early [s], for rounding errors in sums of many time steps."""
 
 
 class Sensor(DescribedSensor):
@@ -486,7 +486,7 @@ class Sensor(DescribedSensor):
         return Place(self.GetTransform(), carrier)
 
     def _measured(self, stamp: int) -> SensorData:
-        """Measure, and draw the measurement if that is switched on."""
+        """Return a new measurement; draw it if drawing measurements is switched on."""
         device = self.device
         data = self._instrument.measured(device, self._place(), stamp)
         scanned = self._instrument.scanned

@@ -23,7 +23,7 @@ _KINDS = {
     5: IkParameterizationType.TranslationDirection5D,
     3: IkParameterizationType.Translation3D,
 }
-"""Default goal type by number of joints."""
+"""Default goal type by number of arm joints."""
 
 
 def numbers_in(words: Sequence[str]) -> list[float] | None:

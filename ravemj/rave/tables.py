@@ -67,7 +67,7 @@ def print_pretty(printer: Any, thing: object, text: str) -> None:  # noqa: ANN40
 
 
 def _aligned(headings: Sequence[str], rows: Sequence[Row]) -> list[str]:
-    """Return the lines of a table with aligned columns; none for no rows."""
+    """Return the lines of a table with aligned columns; an empty list if there are no rows."""
     cells = [list(headings), *rows] if rows else []
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
@@ -90,7 +90,7 @@ def _axes(joint: "Joint") -> Iterable[Row]:
 
 
 def _table(rows: Iterable[Row], headings: Iterable[str] = _HEADINGS) -> str:
-    """Return the HTML of a table; an empty text for no rows."""
+    """Return a table as HTML; an empty string if there are no rows."""
     head = "".join(f"<th>{heading}</th>" for heading in headings)
     body = "".join(f"<tr>{''.join(f'<td>{escape(cell)}</td>' for cell in row)}</tr>" for row in rows)
     return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>" if body else ""

@@ -73,9 +73,9 @@ _PER_STANDARD = {
     "deg": 57.29577951308232,
     "cdeg": 5729.577951308232,
 }
-"""Number of units per metre, gram or radian; inch, foot and pound have their legal definitions.
+"""Number of units per metre, gram or radian, for inch, foot, pound (legal definitions) and angles.
 
-All other units are 10 to the power of their number: ``mm`` is -3.
+Any other unit is 10 to the power of its enumeration number: ``mm`` is -3.
 """
 
 _OTHER_WORDS: dict[type[NamedInt], dict[str, str]] = {
@@ -99,7 +99,7 @@ def _written(unit: NamedInt) -> str:
 
 
 def _read(kind: type[Unit], text: str, default: Unit) -> Unit:
-    """Return the unit that a text names, or the default for an empty text."""
+    """Return the unit named ``text``; the default for an empty text."""
     if not checked_kind(text, str, f"{kind.__name__}: the unit", "a text"):
         return default
     name = _OTHER_WORDS.get(kind, {}).get(text, text)
@@ -262,4 +262,4 @@ class UnitInfo(ApiObject):
 
 
 _KINDS: dict[str, type[NamedInt]] = {name: type(unit) for name, unit in vars(UnitInfo()).items()}
-"""Enumeration of each field of ``UnitInfo``."""
+"""Unit enumeration by field of ``UnitInfo``."""

@@ -97,7 +97,7 @@ class BodyMotion:
 
 
 def _rows(body: BodyState, dofs: list[int], groups: list[Group], waypoints: Waypoints) -> Floats:
-    """Return the joint values of a body at the waypoints; joints that are not in them keep their present values."""
+    """Return the joint values of a body at the waypoints; joints not in the trajectory keep their present values."""
     rows = np.tile(body.kinematics.values(), (len(waypoints), 1))
     for row, numbers in zip(rows, waypoints.data, strict=True):
         values = extraction.joint_values(groups, numbers, body.scene.name, dofs, 0)

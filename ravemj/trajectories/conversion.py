@@ -113,7 +113,7 @@ def _positions(group: Group) -> list[DOFAffine]:
 
 
 def _present(group: Group, find_body: FindBody) -> Floats:
-    """Return the present values of a group; unknown ones are zeros and the identity pose."""
+    """Return a group's values in the present scene; unknown numbers are 0, unknown poses the identity."""
     body = None if group.body is None else find_body(group.body)
     if group.kind == AFFINE[0]:
         parts, axis = affine_parts(group)

@@ -76,14 +76,14 @@ def value(coefficients: Floats, part: float) -> Floats:
 
 
 def _through(known: Sequence[Ends], duration: float) -> Floats:
-    """Return the curve through values and derivatives ``known`` at both ends."""
+    """Return the coefficients of the polynomial with the values and derivatives ``known`` at both ends."""
     ends = [values[end] * duration**order for end in (0, 1) for order, values in enumerate(known)]
     return _hermite(len(known)) @ np.array(ends)
 
 
 @cache
 def _hermite(count: int) -> Floats:
-    """Return the matrix that maps values and scaled derivatives at 0, then at 1, to coefficients."""
+    """Return the matrix from ``count`` values and scaled derivatives at 0, then at 1, to polynomial coefficients."""
     conditions = np.zeros((2 * count, 2 * count))
     for order in range(count):
         conditions[order, order] = math.factorial(order)

@@ -26,7 +26,7 @@ JOINT_TRAJECTORY_SUFFIXES = (".yaml", ".yml", ".json", ".ros2.csv")
 """Suffixes of files of a ``JointTrajectory``."""
 
 _ORDERS = {"positions": ("position", ""), "velocities": ("velocity", "/s"), "accelerations": ("acceleration", "/s^2")}
-"""Column word and unit of each field of a point in a table."""
+"""Word in column names, and unit, of each field of a trajectory point in a table."""
 
 _NANOSECONDS = 10**9
 LARGEST_NUMBER = 1e300
@@ -196,7 +196,7 @@ def _from_message(content: object, source: Source) -> JointTrajectory:
 
 
 class _MessagePoint:
-    """Point of a message. Its errors name the point."""
+    """Point of a trajectory message; its errors name the point."""
 
     def __init__(self, number: int, content: object, count: int, source: Source) -> None:
         self._place, self._count, self._source = f"points[{number}]", count, source
@@ -221,7 +221,7 @@ class _MessagePoint:
         return float(number)
 
     def time(self) -> float:
-        """Return ``time_from_start`` [s], with the field names of ROS 2 or ROS 1."""
+        """Return ``time_from_start`` [s], from the field names of ROS 2 or ROS 1."""
         stamp = self._fields.get("time_from_start")
         parts = fields_of(stamp)
         for names in (("sec", "nanosec"), ("secs", "nsecs")):
@@ -232,7 +232,7 @@ class _MessagePoint:
 
 
 def _same_for_all(rows: list[list[float]], name: str, source: Source) -> list[list[float]] | None:
-    """Return the values of a field of all points; None if no point has it."""
+    """Return a field's values at all points; None if no point has the field. Raise an error if only some have it."""
     empty = [number for number, row in enumerate(rows) if not row]
     if len(empty) == len(rows):
         return None

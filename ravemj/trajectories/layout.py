@@ -84,7 +84,7 @@ def find_compatible(groups: Sequence[Group], name: str, exact: bool = False) -> 
 
 
 def _likeness(words: list[str], wanted: list[str]) -> int:
-    """Return the similarity of two names; 0 for different kinds or bodies."""
+    """Return the similarity of two group names, given as words; 0 for different kinds or bodies."""
     if words[:1] != wanted[:1]:
         return 0
     if len(words) < 2 or len(wanted) < 2:
@@ -196,7 +196,7 @@ def merged(groups: Sequence[Group], others: Sequence[Group]) -> list[Group]:
 
 
 def _widened(group: Group, other: Group) -> bool:
-    """Extend a group in place by the values of another; return False if they describe different quantities."""
+    """Add another group's values to a group, in place; return False if they are of different quantities."""
     of_joints = group.kind in JOINTS or group.kind in {"joint_torques", "grab"}
     if group.kind == "outputSignals":
         present = group.name.split()[1:]

@@ -156,7 +156,7 @@ def read_csv(file: str, time_name: str = _TIME) -> MotionTable:
 
 
 def _lines(file: str, text: TextIO) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number and the cells of each line that is not empty."""
+    """Yield line number and cells of each line that is neither empty nor a comment."""
     import csv  # noqa: PLC0415 - slow to import
 
     for number, line in enumerate(text, 1):
@@ -191,7 +191,7 @@ def did_you_mean(name: str, joint_names: Sequence[str]) -> str:
 
 
 def _numbers(file: str, lines: Iterable[tuple[int, list[str]]], width: int, time: int) -> "array[float]":
-    """Return all cells of the table in one array, row by row."""
+    """Return all cells in one array, row by row. Check that all rows have ``width`` cells, and that times increase."""
     numbers = array("d")
     before = -math.inf
     for line, cells in lines:

@@ -124,8 +124,6 @@ def _from_bytes(data: bytes) -> Stored:
 
 
 class _ByteReader:
-    """Sequential reader of bytes."""
-
     def __init__(self, data: bytes) -> None:
         self._data = data
         self._at = 0

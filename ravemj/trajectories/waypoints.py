@@ -39,7 +39,7 @@ _ORDER = (
     *(f"{part}_{rate}" for rate in ("snaps", "jerks", "accelerations", "velocities") for part in ("joint", "affine")),
     *("joint_values", "affine_transform", "joint_torques"),
 )
-"""Order of the groups in trajectories, as in OpenRAVE; other kinds come last."""
+"""Order of group kinds in trajectories, as in OpenRAVE; other kinds come last."""
 
 
 class Waypoints:
@@ -224,7 +224,7 @@ class Waypoints:
         return self.data[index - 1, group.columns], self.data[index, group.columns]
 
     def _unwound(self, group: Group, ends: Ends, find_body: FindBody) -> Ends:
-        """Return the values at both ends; circular joints at the second end are shifted by turns towards the first."""
+        """Return the values at both ends of a segment; full turns of circular joints are removed from the second."""
         first, second = ends
         body = find_body(group.body or "") if group.kind == JOINTS[0] else None
         if body is None:
@@ -235,9 +235,9 @@ class Waypoints:
         return first, np.where(circular, second - 2 * np.pi * turns, second)
 
     def _curve(self, group: Group, interpolation: str, index: int, duration: float, find_body: FindBody) -> Floats:
-        """Return the curve of a group in the segment before waypoint ``index``.
+        """Return the polynomial of a group in the segment before waypoint ``index``.
 
-        If derivatives are missing, it is the time derivative of the curve of the group's integral.
+        If derivatives are missing, it is the time derivative of the polynomial of the group's integral.
         """
         if group.kind == IK[0]:
             what = f"'{interpolation}' interpolation of goals of inverse kinematics"
@@ -258,7 +258,7 @@ class Waypoints:
         return differentiated(self._curve(integral, higher, index, duration, find_body), duration)
 
     def _derivatives(self, group: Group, interpolation: str) -> list[Group]:
-        """Return the groups with the derivatives of another group, as far as the interpolations are consistent."""
+        """Return the groups with the successive derivatives of another group, up to the first one that does not fit."""
         derivatives: list[Group] = []
         while interpolation != INTERPOLATIONS[0]:
             derivative = find_shifted(self.groups, group.name, len(derivatives) + 1, exact=True)

@@ -56,7 +56,7 @@ class Batch:
                     poses[:, link, 3] = (0.0, 0.0, 0.0, 1.0)
 
     def _state(self, values: Floats) -> KinematicState:
-        """Return the poses of links and axes for joint values [rad or m], shape (dof, N)."""
+        """Return the poses of links and joint axes for joint values [rad or m], shape (dof, N)."""
         tree, count = self._dynamics.tree, values.shape[1]
         axes, anchors = np.zeros((tree.count, 3, count)), np.zeros((tree.count, 3, count))
         links = np.zeros((len(self._kinematics.body_ids), 4, 3, count))
@@ -186,12 +186,12 @@ class Batch:
 
     @cached_property
     def _data(self) -> mujoco.MjData:
-        """Separate state of the body's model, in which only joints have velocities."""
+        """Separate MuJoCo state of the body, in which the base never has a velocity."""
         return mujoco.MjData(self._kinematics.model)
 
 
 def _combined(vectors: Floats, factors: Floats) -> Floats:
-    """Return the weighted sum of three arrays; with BLAS, rounding would depend on the number of columns."""
+    """Return x v1 + y v2 + z v3 of three arrays; with BLAS, rounding would depend on the number of columns."""
     x, y, z = factors.tolist()
     return x * vectors[0] + y * vectors[1] + z * vectors[2]
 

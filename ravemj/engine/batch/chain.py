@@ -59,7 +59,7 @@ class LinkChain:
             self.steps[self._step_of[link]].links.append(link)
 
     def _hang(self, index: int, joint: Joint) -> None:
-        """Add the steps of a joint, and attach its child to them."""
+        """Add the steps of a joint to the chain, one per axis, and attach the joint's child link to the last one."""
         kinematics = self._kinematics
         places = kinematics.joint_qpos[index]  # none for a joint that never moves
         step, T_step_parent = self._step_of[joint.parent], self.T_step_links[joint.parent]
@@ -127,7 +127,7 @@ class LinkChain:
         return np.repeat(frame[:, :, None], count, axis=2)
 
     def _ways(self, values: Floats, chosen: Sequence[int]) -> Floats:
-        """Return joint angles or displacements of the chosen steps minus their references, shape (len(chosen), N)."""
+        """Return displacements of the chosen steps from their reference values [rad or m], shape (len(chosen), N)."""
         ways = np.zeros((len(chosen), values.shape[1]))
         first_values = self._first_values(values)
         for index, step in enumerate(self.steps[number] for number in chosen):
@@ -171,7 +171,7 @@ def _cosines_and_sines(angles: Floats) -> tuple[Floats, Floats]:
 
 
 def _hinged(parent: Floats, T_parent_frame: Floats, cosines: Floats, sines: Floats) -> Floats:
-    """Return the frames behind a hinge, (4, 3, N), for parent frames of shape (4, 3 N)."""
+    """Return the frames after a revolute joint, (4, 3, N), for N parent frames, shape (4, 3 N)."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     x_part, y_part = frames[:2] * sines
     frames[:2] *= cosines
@@ -181,14 +181,14 @@ def _hinged(parent: Floats, T_parent_frame: Floats, cosines: Floats, sines: Floa
 
 
 def _slid(parent: Floats, T_parent_frame: Floats, ways: Floats) -> Floats:
-    """Return the frames behind a prismatic joint for N displacements ``ways`` [m]."""
+    """Return the frames after a prismatic joint, (4, 3, N), for N displacements ``ways`` [m]."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     frames[3] += ways * frames[2]
     return frames
 
 
 def _turned(parent: Floats, T_parent_frame: Floats, vectors: Floats) -> Floats:
-    """Return the frames behind a spherical joint for N rotation vectors (axis times angle [rad]), shape (3, N)."""
+    """Return the frames after a spherical joint, (4, 3, N), for N rotation vectors [rad], shape (3, N)."""
     frames = (T_parent_frame.T @ parent).reshape(4, 3, -1)
     angle = np.sqrt((vectors * vectors).sum(axis=0))
     x, y, z = vectors / np.where(angle > 0, angle, 1.0)

@@ -61,7 +61,7 @@ class KinematicState:
         return self._outward(self.screws * accelerations[:, None] + turned * velocities[:, None])
 
     def _outward(self, own: Floats) -> Floats:
-        """Accumulate the values of coordinates from the base outwards, in place."""
+        """Add to each coordinate's values those of all coordinates between it and the base, in place."""
         for coordinate, parent in enumerate(self.tree.parents):
             if parent != NONE:
                 own[coordinate] += own[parent]

@@ -68,7 +68,7 @@ class Tested(NamedTuple):
 
 
 class _Cases(NamedTuple):
-    """Pairs in configurations, and their current bounds; gaps [m] are those of ``Tested``."""
+    """Cases, each a pair of geoms in one configuration (row), with the current bounds of ``Tested``."""
 
     rows: Ints
     pairs: Ints
@@ -77,7 +77,7 @@ class _Cases(NamedTuple):
     measured: Floats
 
     def open_of(self, cases: Ints) -> Ints:
-        """Return those of some cases that may come too near."""
+        """Return the given cases whose geoms may still come too near."""
         return cases[self.gaps[cases] <= self.needed[cases]]
 
 
@@ -180,7 +180,7 @@ class Clearances:
         mujoco.mj_kinematics(self._model, self._data)
 
     def _travel(self, changes: Floats, rows: Ints, pairs: Ints) -> Floats:
-        """Return the maximum relative travel of the pairs of cases [m], shape (k,)."""
+        """Return the maximum relative travel of each case's geoms [m], shape (k,)."""
         count, which = len(changes), self._rows[:, pairs]
         is_used = np.zeros(len(self._moving) + 1, dtype=bool)
         is_used[which] = True  # -1, in place of what does not move, is the last one
@@ -203,10 +203,10 @@ class Clearances:
         return flat[first] + flat[second]
 
     def _separate(self, cases: _Cases, some: Ints, directions: Floats | None = None, *, exactly: bool = False) -> None:
-        """Raise the bounds of gaps of some cases by separation along directions, unit vectors or NaN, shape (k, 3).
+        """Raise gap bounds of some cases by separating planes; ``directions`` are unit normals or NaN, shape (k, 3).
 
-        The default directions are those of the last measurements. Unless ``exactly``, meshes are replaced by their
-        bounding boxes.
+        The default normals are the directions of the last measurements. Unless ``exactly``, meshes are replaced by
+        their bounding boxes.
         """
         if not len(some):
             return
@@ -251,7 +251,7 @@ class Clearances:
         self._data.geom_xmat[...] = self._rotations[row].reshape(-1, 9)
 
     def _measure_triangles(self, cases: _Cases, some: Ints) -> None:
-        """Measure non-convex meshes whose hulls are too close by their triangles, and raise the bounds."""
+        """Measure non-convex meshes by their triangles if their hulls are too close, and raise the gap bounds."""
         for case in some.tolist():
             self._place(int(cases.rows[case]))
             pair = cases.pairs[case]
@@ -261,7 +261,7 @@ class Clearances:
 
 
 def _middles(cases: Ints, pairs: Ints) -> Ints:
-    """Return the middle undecided case of each pair that has any."""
+    """Return the middle one of each pair's undecided cases."""
     order = np.argsort(pairs[cases], kind="stable")
     _, starts, counts = np.unique(pairs[cases][order], return_index=True, return_counts=True)
     return np.sort(cases[order[starts + counts // 2]])
@@ -270,8 +270,8 @@ def _middles(cases: Ints, pairs: Ints) -> Ints:
 class _Supports:
     """Support functions of geoms.
 
-    In direction l in the axes of the geom, the function of a sphere, capsule, cylinder or box is ``round + flat |l| +
-    disc |l_xy|``; the bounding box of a mesh adds ``middle l``.
+    For a direction l in the geom's frame, the support function of a sphere, capsule, cylinder or box is
+    ``round + flat |l| + disc |l_xy|``; for the bounding box of a mesh, ``middle l`` is added.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -287,7 +287,7 @@ class _Supports:
         self._vertices = {geom: _hull(model, int(model.geom_dataid[geom])) for geom in np.flatnonzero(mesh).tolist()}
 
     def of(self, geoms: Ints, directions: Floats, rotations: Floats, *, exactly: bool) -> Floats:
-        """Return max d x over all points x of each geom, from its origin, for unit vectors d of shape (k, 3).
+        """Return the maximum of d·x over the points x of each geom, from its origin, for unit vectors d, shape (k, 3).
 
         Unless ``exactly``, meshes are replaced by their bounding boxes.
         """

@@ -74,6 +74,6 @@ def has_group(body: KinBody, name: str) -> bool:
 
 
 def _with_group(body: KinBody, name: str) -> KinBody:
-    """Return a body with the geometries of a group on the links that have it."""
+    """Return a body in which links that have the geometry group ``name`` use its geometries."""
     links = tuple(replace(link, geometries=dict(link.groups).get(name, link.geometries)) for link in body.links)
     return replace(body, links=links)

@@ -32,9 +32,9 @@ class _Meant:
     """Geom pairs that are tested for a robot and a target.
 
     Attributes:
-        link: For each geom, the robot link that it belongs to or that holds it; -1 for geoms of other bodies.
-        side: For each geom, 1 if it is of the target, 2 if it is of another body, else 0.
-        within: Pairs of geoms of the robot, both orders.
+        link: For each geom, its robot link, or the robot link that holds its body; -1 for other geoms.
+        side: For each geom, 1 if it belongs to the target, 2 if to another body, 0 if to the robot.
+        within: Pairs of geoms of the robot, in both orders.
         masks: Masks with which MuJoCo tests all pairs except ``left_out``.
         left_out: Pairs that MuJoCo cannot test, or None.
     """
@@ -141,7 +141,7 @@ class HandTests:
         return [contact for contact, _ in contacts], [self._meant.link[geom] for _, geom in contacts]
 
     def _name(self, pair: Pair, links: frozenset[int], against: Against) -> str | None:
-        """Return the name of the other body or link of a pair of geoms; None if the pair is not tested."""
+        """Return the name of the body or link in contact with the hand; None if the pair of geoms is not tested."""
         meant = self._meant
         for geom, other in (pair, (pair[1], pair[0])):
             if meant.link[geom] not in links:
@@ -160,7 +160,7 @@ class HandTests:
         return self._touching[pair]
 
     def _move(self, T_world_base: Floats, values: Floats) -> None:
-        """Place the robot, and let MuJoCo find the contacts."""
+        """Place the robot, and detect contacts of hulls with MuJoCo."""
         key = T_world_base.tobytes() + values.tobytes()
         if key == self._key:
             return

@@ -69,7 +69,7 @@ class HeldRoots:
 
 
 class _Root(NamedTuple):
-    """Grabbed root link, and the grabbing link, by MuJoCo's indices."""
+    """Root link of a grabbed body, and the link that grabs it, as MuJoCo body indices."""
 
     body_id: int
     carrier: int
@@ -86,10 +86,10 @@ _KEY = 1 << 31
 """Upper bound of the number of geoms, for encoding a pair as one number."""
 
 _CLEARANCE = 3e-3
-"""Distance below which hulls nearly touch, as a fraction of the size of the body."""
+"""Distance at which hulls count as nearly touching, as a fraction of the body's size."""
 
 _MANY = 50
-"""Number of configurations from which threads are worthwhile."""
+"""Number of configurations from which threads are faster."""
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> "MovingTest | None":
@@ -185,7 +185,7 @@ def _restore(
 
 
 class _Chosen(NamedTuple):
-    """Selected geom pairs of a test of a body."""
+    """Geom pairs of one collision test of a moving body, and the masks for MuJoCo."""
 
     meant: frozenset[int]  # ``_keys`` of those that MuJoCo looks at, in both orders
     masks: Masks  # for MuJoCo to look at these
@@ -195,7 +195,7 @@ class _Chosen(NamedTuple):
 
     @classmethod
     def of(cls, world: CollisionWorld, body: BodyState, dofs: Sequence[int], kinds: Sequence[_Kind]) -> "_Chosen":
-        """Return the cached selection of pairs, which is valid as long as bodies only move."""
+        """Return the pairs of a body with the given DOFs; cached, since they are valid while bodies only move."""
         moved = MovedBy(tuple(dofs))
         return world.kept((body, moved, kinds), lambda: cls._chosen(world, body, moved, kinds))
 
@@ -224,7 +224,7 @@ def _as_array(pairs: Pairs) -> Ints:
 
 
 def _apart_from(world: CollisionWorld, pairs: Pairs, others: Pairs) -> Pairs:
-    """Return the pairs that are not among others."""
+    """Return the pairs that are not in ``others``, in either order."""
     known = _as_array(others)
     kept = ~np.isin(_keys(_as_array(pairs)), _keys(np.concatenate([known, known[:, ::-1]])))
     return world.make_pairs(pairs.first[kept], pairs.second[kept])
@@ -359,7 +359,7 @@ class MovingTest:
         return touching
 
     def _move_and(self, detect: Callable[[], None], values: Floats) -> None:
-        """Move the body, and run a detection of MuJoCo with grabbed bodies at their carriers."""
+        """Move the body and its grabbed bodies, then call ``detect``."""
         self._place(values)
         if self._held is None:
             mujoco.mj_kinematics(self._model, self._data)

@@ -223,7 +223,7 @@ class Pairs:
         return sorted(self._touching + self._rest_near) if self._rest_near else self._touching
 
     def _detect(self) -> None:
-        """Find the pairs with touching hulls, among those that MuJoCo tests."""
+        """Find the pairs with overlapping hulls, among those that MuJoCo can test."""
         geoms = self._detection.detect(self._masks)
         chosen = b"" if geoms is None or geoms is _NO_GEOMS else geoms.tobytes()
         if geoms is not None and chosen != self._found:
@@ -277,5 +277,5 @@ def _ordered(first: int, second: int) -> tuple[int, int]:
 
 
 def _match(types: _Bits, affinities: _Bits, first: NDArray[np.integer], second: NDArray[np.integer]) -> Bools:
-    """Return for each pair whether the masks admit it."""
+    """Return for each pair of geoms whether MuJoCo's contact types and affinities allow a contact."""
     return ((types[first] & affinities[second]) | (types[second] & affinities[first])) != 0

@@ -20,7 +20,7 @@ from ravemj.engine.collision.world import CollisionWorld
 
 _PARENTS_COUNT = int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)
 _MOST = 8
-"""Maximum number of contact points of a pair; the others lie between the kept points."""
+"""Maximum number of contact points per geom pair; points between the kept ones are dropped."""
 
 _ONES = np.ones(3)
 _SAME = 1e-7  # m; contact points of one pair that are nearer to each other count as one

@@ -36,7 +36,7 @@ LinkOf = tuple[BodyState, int]
 """Link by its body and index."""
 
 _touching_at_rest: "WeakKeyDictionary[BodyState, tuple[Floats | None, frozenset[Pair]]]" = WeakKeyDictionary()
-"""Rest pose of each body, and the pairs of links that touch in it."""
+"""For each body, its rest poses and the pairs of links that touch in them."""
 
 
 def body_and_others(
@@ -180,7 +180,7 @@ def body_of(thing: BodyState | LinkOf) -> BodyState:
 
 
 def _geoms(world: CollisionWorld, thing: BodyState | LinkOf, links: Links = None) -> Ints:
-    """Return the geoms of a link, of links with grabbed bodies, or of a body and all bodies connected by grabs."""
+    """Return geoms: of a link; of a body and all bodies connected by grabs; or of ``links`` and what they grab."""
     if not isinstance(thing, BodyState):
         return world.geoms_of_link(*thing)
     if links is None:

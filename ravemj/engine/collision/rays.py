@@ -15,7 +15,7 @@ _GROUPS = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
 _FAR = 1e10
 
 _SHORTEST = 1e-14
-"""Length of a direction [m] slightly above that which MuJoCo treats as zero."""
+"""Minimum length of a ray's direction [m]; MuJoCo treats shorter ones as zero."""
 
 
 class RayHit(NamedTuple):

@@ -90,7 +90,7 @@ class ShapeTests:
         return contacts or [self.contact(first, second)]
 
     def _contact(self, first: int, second: int, depth: float, segment: Floats) -> Contact:
-        """Return the contact of two geoms, given its depth and their deepest points as one vector [m], shape (6,)."""
+        """Return the contact of two geoms, given its depth and their deepest points, ``segment``, shape (6,) [m]."""
         x, y, z, u, v, w = segment.tolist()  # plain floats: numpy takes ten times as long for so few
         normal = u - x, v - y, w - z
         if depth <= TOUCHING:  # no direction in the two points

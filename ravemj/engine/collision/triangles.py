@@ -27,7 +27,7 @@ _XML = """<mujoco><asset>
 _TRIANGLE, _OTHER_TRIANGLE, _SOLID = range(3)
 
 _Candidate = tuple[float, Floats, Floats | None]
-"""Lower bound of the distance [m], triangle of a mesh, and triangle of the other mesh, or None for a solid."""
+"""Pair to measure: lower bound of the distance [m], triangle, and triangle of the other mesh (None for a solid)."""
 
 _SLACK = 1e-4  # [m]; margin of boxes, since FCL's test of a box and a triangle has errors of 1e-6
 
@@ -73,7 +73,7 @@ class TriangleTests:
         return self._least(mesh, _SOLID, candidates, 2 * touching, np.zeros(6), enough=touching) <= touching
 
     def _near_solid(self, mesh: int, solid: int, box: tuple[Floats, Floats], touching: float) -> Iterator[_Candidate]:
-        """Yield the triangles that may be within ``touching`` [m] of a solid: FCL finds those near its bounding box."""
+        """Yield triangles of a mesh that may be within ``touching`` [m] of a solid with the bounding box ``box``."""
         if touching > _SLACK / 2:
             yield from self._triangles_of(mesh).near(*box, touching)
             return
@@ -126,7 +126,7 @@ class TriangleTests:
         return ((-np.inf, first, two) for first, two in zip(ours, theirs, strict=True))
 
     def _place_solid(self, mesh: int, solid: int) -> tuple[Floats, Floats]:
-        """Put a solid into the scratch model; return centre and half extents of its box in the mesh's frame."""
+        """Copy a solid to the scratch model; return centre and half extents of its bounding box in the mesh's frame."""
         rotation, position = self._pose_in(mesh, solid)
         self._scratch.geom_type[_SOLID] = self._model.geom_type[solid]
         self._scratch.geom_size[_SOLID] = self._model.geom_size[solid]
@@ -181,12 +181,12 @@ class TriangleTests:
         return self._data.geom_xmat[geom].reshape(3, 3), self._data.geom_xpos[geom]
 
     def _pose_in(self, first: int, second: int) -> tuple[Floats, Floats]:
-        """Return the rotation and the position of the second geom in the first one's frame."""
+        """Return the rotation and position of geom ``second`` in the frame of geom ``first``."""
         (rotation, position), (second_rotation, second_position) = self._pose(first), self._pose(second)
         return rotation.T @ second_rotation, rotation.T @ (second_position - position)
 
     def _placed(self, geom: int) -> fcl.CollisionObject:
-        """Return a mesh at its present pose, or the bounding box of another shape, for FCL."""
+        """Return the FCL object of a geom at its present pose: a mesh, or the bounding box of another shape."""
         rotation, position = self._pose(geom)
         if not self._is_mesh(geom):
             position = position + rotation @ self._model.geom_aabb[geom, :3]

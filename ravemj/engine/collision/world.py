@@ -29,7 +29,7 @@ MOST_AT_ONCE = 1000
 """Maximum number of configurations per multithreaded call, which bounds memory."""
 
 _WORTH_MASKS = 1.5
-"""Minimum factor of saved pairs with which masks are worthwhile."""
+"""Minimum ratio of all pairs to those left by masks, from which masks save time."""
 
 _POSITIONS = 1  # mjSTAGE_POS: results of joint positions, including contacts
 
@@ -63,7 +63,7 @@ class CollisionWorld:
         self._find_owners(model.model)
 
     def _find_owners(self, model: mujoco.MjModel) -> None:
-        """Find body and link of each geom, in arrays over MuJoCo's bodies."""
+        """Find the body and link of each geom."""
         owners, links = np.full(model.nbody, -1), np.zeros(model.nbody, dtype=int)
         enabled = np.zeros(model.nbody, dtype=bool)
         for number, body in enumerate(self.bodies):
@@ -188,7 +188,7 @@ class CollisionWorld:
         return np.array(counts) > 0
 
     def _batch(self, threads: int) -> "Batch":
-        """States of the model for several threads; they share the model, in which bodies without joints move, too."""
+        """Return states of the model for several threads; they share the model, and with it poses of fixed bodies."""
         from mujoco.batch import Batch  # noqa: PLC0415 - slow to import
 
         batch = Batch(self._model, MOST_AT_ONCE, threads)

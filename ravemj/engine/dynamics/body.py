@@ -119,7 +119,7 @@ class BodyDynamics:
         self._rest_qacc = np.zeros(model.nv)
 
     def _columns(self) -> Ints | None:
-        """Column of each DOF among MuJoCo's velocities, ``nv`` if it has none; None if DOFs are coupled."""
+        """Index of each DOF among MuJoCo's velocities, ``nv`` if its joint is fixed; None if DOFs are coupled."""
         constant = self.couplings.constant
         if constant is None or not self.couplings.is_one_to_one:
             return None
@@ -128,17 +128,17 @@ class BodyDynamics:
         return columns
 
     def _matrix(self, coupling: Coupling) -> Floats:
-        """Return the coupling matrix with a row for each of MuJoCo's velocities, shape (nv, dof)."""
+        """Return the coupling matrix from DOF to MuJoCo velocities, shape (nv, dof)."""
         matrix = np.zeros((self._model.nv, self._kinematics.dof))
         matrix[self._inner] = coupling.forward(np.eye(self._kinematics.dof))
         return matrix
 
     def _coupling(self, *, second: bool = False) -> Coupling:
-        """Return the coupling in the present configuration."""
+        """Return the coupling of MuJoCo's velocities to the DOFs in the present configuration."""
         return self.couplings.constant or self.couplings.at(self._kinematics.values(), second=second)
 
     def _of_dofs(self, rows: DerivativeRows) -> Floats:
-        """Return a copy of MuJoCo's result as a derivative by the DOFs, shape (..., dof)."""
+        """Return a copy of MuJoCo's Jacobian with a column per DOF, shape (..., dof)."""
         if self._are_one_to_one:
             return rows.of_dofs(None)
         matrix = self._coupling_matrix
@@ -255,7 +255,7 @@ class BodyDynamics:
         return self._data.xpos.take(ids, 0) - self._data.subtree_com.take(self._root_ids, 0)
 
     def _present_velocities(self, arms: Floats) -> Floats:
-        """Return the link velocities in MuJoCo's data, shape (links, 6); ``arms`` are ``_arms``."""
+        """Return the link velocities in MuJoCo's data, shape (links, 6); ``arms`` is the result of ``_arms``."""
         motions = self._data.cvel.take(self._kinematics.body_ids, 0)
         spins = motions[:, :3]
         return np.concatenate((motions[:, 3:] + cross_rows(spins, arms), spins), axis=1)
@@ -405,9 +405,9 @@ class BodyDynamics:
         return self._of_dofs(self._forces), self._of_dofs(self._by_velocity), self._of_dofs(self._rest)
 
     def _write_parts_of_joints(self) -> None:
-        """Write the force components of the motion in MuJoCo's data, if only joints without motors move.
+        """Write the forces due to acceleration, velocity and gravity, if only joints without motors move.
 
-        MuJoCo can omit accelerations; without gravity, only velocity effects remain.
+        Without accelerations and gravity, ``mj_rne`` returns only the effects of velocity.
         """
         by_acceleration, by_velocity, rest = self._forces.matrix, self._by_velocity.matrix, self._rest.matrix
         mujoco.mj_rne(self._model, self._data, 1, by_acceleration)
@@ -418,9 +418,9 @@ class BodyDynamics:
         rest -= by_velocity
 
     def _write_parts_of_all(self, velocities: Floats) -> None:
-        """Write the force components of the motion in MuJoCo's data.
+        """Write the forces of the motion in MuJoCo's data, split into acceleration, joint velocity and rest.
 
-        The component of joint velocities is computed with the base at rest and without gravity.
+        The part of joint velocities is computed with the base at rest and without gravity.
         """
         by_acceleration, by_velocity, rest = self._forces.matrix, self._by_velocity.matrix, self._rest.matrix
         self._needed(by_acceleration)
@@ -439,7 +439,7 @@ class BodyDynamics:
         self._gravity[...] = self._free_fall[1]
 
     def _add_external(self, forces: Floats, external: Mapping[int, Floats]) -> None:
-        """Add forces and moments on links at their centres of mass."""
+        """Add external wrenches on links, at their centres of mass, to the generalised forces."""
         for link, wrench in external.items():
             body_id = self._body_ids[link]
             mujoco.mj_applyFT(self._model, self._data, wrench[:3], wrench[3:], self._xipos[body_id], body_id, forces)

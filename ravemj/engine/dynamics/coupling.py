@@ -132,7 +132,7 @@ class _Partials:
         gradients: dict[int, Gradient],
         hessians: dict[int, Hessian] | None,
     ) -> tuple[Gradient, Hessian]:
-        """Return the derivatives by the DOFs, from those of the leading joints."""
+        """Return the first and second derivatives of a mimic joint by the DOFs, by the chain rule over its leaders."""
         gradient: Gradient = {}
         hessian: Hessian = {}
         moving = [name for name in self.names if _index(name) in gradients]
@@ -162,7 +162,7 @@ def _index(name: str) -> int:
 
 
 def _value(expression: "Expression", named: dict[str, Floats], values: Floats) -> Floats:
-    """Return an expression's value in one configuration or in many."""
+    """Return an expression's value in one configuration, or in many if ``values`` has two axes."""
     wanted = {name: named[name] for name in expression.variables}
     if values.ndim > 1:
         return np.broadcast_to(expression.evaluate_many(wanted), values.shape[1:])
@@ -170,7 +170,7 @@ def _value(expression: "Expression", named: dict[str, Floats], values: Floats) -
 
 
 def _add_spherical(coupling: Coupling, joint: SphericalJoint, coordinate: int, vector: Floats, *, second: bool) -> None:
-    """Add the entries of a spherical joint, whose coordinates are about the axes of the child link."""
+    """Add a spherical joint to a coupling; its MuJoCo velocities are about the axes of the child link."""
     rest = np.array(rows_from_wxyz(joint.joint.T_parent_child.wxyz)).T
     rate, changes = rotation_rate(vector)
     first = joint.dofs.start
@@ -208,7 +208,7 @@ def rotation_rate(vector: Floats) -> tuple[Floats, list[Floats]]:
 
 
 def _series(square: Floats, first: int) -> tuple[Floats, Floats]:
-    """Return the sum of (-1)^k s^k / (2k + first)! over k, and its derivative by s."""
+    """Return the sum of (-1)^k s^k / (2k + first)! over k, as in sin and cos of √s, and its derivative by s."""
     terms = [(-1) ** k / math.factorial(2 * k + first) for k in range(6)]
     small = np.polynomial.polynomial.polyval(square, terms)
     small_slope = np.polynomial.polynomial.polyval(square, [k * term for k, term in enumerate(terms)][1:])

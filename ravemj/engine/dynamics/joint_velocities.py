@@ -116,7 +116,7 @@ class JointVelocities:
         return np.linalg.pinv(np.array(columns).T) @ shown
 
     def _spherical_velocity(self, joint: Joint, turning: Floats) -> Floats:
-        """Return the rate of a joint's rotation vector, for an angular velocity in the parent's axes."""
+        """Return the rate of a spherical joint's rotation vector, for an angular velocity in the parent's axes."""
         spherical = next(
             (candidate for candidate in self._kinematics.spherical if candidate.joint.child == joint.child), None
         )

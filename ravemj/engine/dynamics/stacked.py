@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 _BASE = 6
 _STILL = np.eye(_BASE).ravel()
-"""Base columns of the Jacobian of a point at the base's origin, row by row."""
+"""Columns of base velocities in the Jacobian of a point at the base's origin, row by row."""
 _PLACES = np.array([_BASE * row + 3 + column for row in range(3) for column in range(3) if row != column])
 _COMPONENTS = np.array([2, 1, 2, 0, 1, 0])
 _SIGNS = np.array([1.0, -1.0, -1.0, 1.0, 1.0, -1.0])
-"""Nonzero entries of the matrix -[arm]x of a cross product: positions, component of the lever arm, and sign."""
+"""Nonzero entries of the cross product matrix -[arm]x: position, component of the lever arm, and sign."""
 
 
 def with_base_columns(jacobians: Floats, arms: Floats) -> Floats:

@@ -356,7 +356,7 @@ class BodyKinematics:
             self._set_root_wxyz(T_world_link0.wxyz)
 
     def _set_root_wxyz(self, wxyz: Wxyz) -> None:
-        """Write the orientation of the first link with the given sign of the quaternion."""
+        """Write the orientation of the first link; unlike a rotation matrix, it keeps the quaternion's sign."""
         if 0 in self.roots:
             first = self.root_qpos[self.roots.index(0)]
             self.qpos[first + 3 : first + 7] = wxyz
@@ -427,7 +427,7 @@ def fixed_view(numbers: Floats, indices: Ints) -> tuple[Floats, EllipsisType | I
 
 
 def _index_range(indices: Ints) -> slice | Ints:
-    """Return consecutive indices as a slice, since slices are faster."""
+    """Return indices, as a slice if they are consecutive, since slices are faster."""
     plain = indices.tolist()
     first = plain[0] if plain else 0
     if plain == list(range(first, first + len(plain))):

@@ -37,7 +37,7 @@ def place_links(kinematics: "BodyKinematics", T_world_links: Floats, last_values
 
 
 def _displace(kinematics: "BodyKinematics", placed: Floats, wanted: Floats) -> None:
-    """Change the links' fixed poses so that the links reach the wanted poses."""
+    """Change the fixed poses of links in their parents so that the links move from ``placed`` to ``wanted``."""
     link_of = np.zeros(kinematics.model.nbody, dtype=int)
     link_of[kinematics.body_ids] = np.arange(len(placed))
     parents = link_of[kinematics.model.body_parentid[kinematics.body_ids]]

@@ -10,7 +10,7 @@ from ravemj.model.joints import ROUNDING, measured_values
 from ravemj.model.scene import Joint
 
 _VALUE_ROUNDING = 1e-12
-"""Accuracy of values [rad or m] computed from poses, for links up to some metres apart."""
+"""Accuracy of joint values [rad or m] computed from link poses, for links up to some metres apart."""
 
 _EYE = np.eye(4).ravel()
 
@@ -51,7 +51,7 @@ class ShownValues:
 
 
 class _SingleAxes:
-    """Joints with one axis."""
+    """Converter from link poses to the values of joints with one axis."""
 
     def __init__(self, joints: Sequence[tuple[Joint, int]]) -> None:
         self.dofs = np.array([dof for _, dof in joints], dtype=int)
@@ -65,7 +65,7 @@ class _SingleAxes:
         self._R_child_parent = rest[:, :3, :3].transpose(0, 2, 1)
 
     def _turned(self, T_world_links: Floats) -> tuple[Floats, Floats]:
-        """Return the rotation of each child from its rest orientation, and the rotation of the parent."""
+        """Return the rotation of each child link from its rest orientation, and the inverse rotation of its parent."""
         R_parent_world = T_world_links[self._parents, :3, :3].transpose(0, 2, 1)
         return R_parent_world @ T_world_links[self._children, :3, :3] @ self._R_child_parent, R_parent_world
 
@@ -97,9 +97,9 @@ def _settled(shown: Floats, last: Floats) -> Floats:
 
 
 def _products() -> Floats:
-    """Return the matrix that maps a rotation matrix, by rows, to four times the products of quaternion components.
+    """Return the matrix, (9, 16), from rotation matrix entries to four times the products of quaternion components.
 
-    Its shape is (9, 16), for all products of w, x, y, z; squares are reduced by 1.
+    The products are those of all pairs of w, x, y, z; squares are reduced by 1.
     """
     xx, xy, xz, yx, yy, yz, zx, zy, zz = np.eye(9)
     return (

@@ -27,7 +27,7 @@ from ravemj.formats.urdf.robot import settle
 from ravemj.model.scene import Scene, View
 
 _GRAVITY = (0.0, 0.0, -9.81)
-"""Default gravity of a model."""
+"""MuJoCo's default gravity [m/s²]."""
 
 __all__ = ["read_mjcf"]
 

@@ -23,12 +23,12 @@ _TAG = re.compile(
 _ATTRIBUTE = re.compile(r"""([\w:.-]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _FOLDERS = {"mesh": ("meshdir", "assetdir"), "hfield": ("assetdir", "texturedir", "meshdir"), "model": ("assetdir",)}
 _NUMBERS = ("hfield",)
-"""Elements that refer to files of raw numbers."""
+"""XML elements that refer to files of raw numbers."""
 
 _COPIES = {"replicate": "count", "composite": "count", "flexcomp": "count"}
 _MOST_COPIES = 100_000
 _MOST_LOOKED_AT = 100
-"""Maximum number of files in a folder that are searched for the model that includes a partial one."""
+"""Maximum number of files of a folder that are searched for the model that includes a partial model."""
 
 
 class StartTag(NamedTuple):
@@ -167,7 +167,7 @@ class MjcfDocument:
         self.access.files.setdefault(path, tag.source)
 
     def _check_files(self) -> None:
-        """Check the files of meshes, height fields and attached models; MuJoCo opens them at the same paths."""
+        """Check that meshes, height fields and attached models may be read; MuJoCo opens them at the same paths."""
         folders = {key: tag.attributes[key] for tag in self.tags for key in _KEYS if key in tag.attributes}
         for tag in self.tags:
             name = tag.attributes.get("file")

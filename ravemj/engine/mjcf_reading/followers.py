@@ -133,7 +133,7 @@ def _product(value: float, factor: str, power: int) -> str:
 
 
 def _image(model: mujoco.MjModel, tree: BodyTree, follower: _Follower, constant: float) -> tuple[float, float]:
-    """Return the minimum and maximum value that a mimic joint can reach."""
+    """Return the smallest and largest value of a mimic joint within the limits of its leaders."""
     low = high = constant
     for leader, coefficients in zip(follower.leaders, follower.coefficients, strict=True):
         axis = tree.joints[leader].axes[0]

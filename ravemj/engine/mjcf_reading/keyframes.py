@@ -38,7 +38,7 @@ def add_keyframes(model: mujoco.MjModel, trees: Sequence[BodyTree]) -> None:
 
 
 def _values(model: mujoco.MjModel, tree: BodyTree, qpos: Floats) -> dict[str, float]:
-    """Return the values of the joints with one axis."""
+    """Return the values of joints with one axis, by joint name."""
     joints = [(index, joint) for index, joint in tree.joints.items() if joint.active and len(joint.axes) == 1]
     return {joint.name: float(qpos[model.jnt_qposadr[index]]) for index, joint in joints}
 
@@ -52,7 +52,7 @@ def _joint_values(model: mujoco.MjModel, tree: BodyTree, index: int, qpos: Float
 
 
 def _root_pose(model: mujoco.MjModel, tree: BodyTree, key: int) -> Pose | None:
-    """Return the pose of a floating or mocap root; None for other roots."""
+    """Return the pose of a floating or mocap root in a keyframe; None for other roots."""
     mocap = int(model.body_mocapid[tree.root])
     if tree.free is not None:
         address = int(model.jnt_qposadr[tree.free])
@@ -73,7 +73,6 @@ def _unit(numbers: Floats) -> Floats:
 
 
 def _move(tree: BodyTree, T_world_root: Pose) -> None:
-    """Move a body so that its root reaches a pose."""
     moved = T_world_root @ tree.builder.links[0].pose.inverse()
     for index, link in enumerate(tree.builder.links):
         link.pose = moved @ link.pose if index else T_world_root

@@ -39,7 +39,7 @@ def report_losses(compiled: CompiledModel, tools: int, diagnostics: Diagnostics)
 
 
 def _warnings(model: mujoco.MjModel, mocap: set[int]) -> Iterator[tuple[int, str, tuple[str, ...]]]:
-    """Yield for each kind of loss: count, message with a placeholder for the count, and tags."""
+    """Yield, for each kind of unsupported element, its count, a message with a placeholder for it, and XML tags."""
     for kind, (tag, effect) in _EQUALITIES.items():
         count = sum(int(model.eq_type[index]) == kind and index not in mocap for index in range(model.neq))
         yield count, f"<{tag}> is left out, {{}}: {effect}", (tag,)
@@ -69,7 +69,7 @@ def _notes(compiled: CompiledModel, tools: int, mocap: set[int]) -> list[tuple[i
 
 
 def _held_by_mocap(model: mujoco.MjModel) -> set[int]:
-    """Return the equalities that weld a body to a mocap body: they pull, but do not fix anything at rest."""
+    """Return the welds to mocap bodies, by equality index: they pull, but do not fix anything at rest."""
     bodies = {index for index in range(model.nbody) if model.body_mocapid[index] >= 0}
     return {
         index

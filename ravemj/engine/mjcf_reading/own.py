@@ -77,23 +77,22 @@ def _same_pose(first: Pose, second: Pose) -> bool:
 
 
 class _GeomRecorder(XmlLines):
-    """Records the attributes of geoms instead of writing them."""
+    """MJCF writer that records the attributes of geoms instead of writing them."""
 
     def __init__(self) -> None:
         super().__init__()
         self.geoms: list[dict[str, Attribute | None]] = []
 
     def element(self, tag: str, source: object = None, /, **attributes: Attribute | None) -> None:
-        """Record the attributes of an element."""
         del tag, source
         self.geoms.append(attributes)
 
 
 class _OwnBody:
-    """Body from a text of the model, to be compared with the MJCF.
+    """Body that ravemj stored as text in an MJCF file, to be compared with the MJCF, which users may have edited.
 
     Attributes:
-        roots: MuJoCo's numbers of its root bodies.
+        roots: MuJoCo's indices of its root bodies.
     """
 
     def __init__(self, reader: TreeReader, body: KinBody, names: StoredNames, touching: Sequence[Pair]) -> None:
@@ -106,10 +105,10 @@ class _OwnBody:
         self.roots = {number for link, number in enumerate(self._bodies) if link not in self._placing}
 
     def check_fit(self) -> None:
-        """Compare the trees of bodies and joints with the MJCF.
+        """Compare the kinematic tree with the MJCF.
 
         Raises:
-            ValueError: they differ.
+            ValueError: bodies or joints differ.
         """
         model, joints = self._model, self._body.all_joints
         for link, number in enumerate(self._bodies):
@@ -127,7 +126,7 @@ class _OwnBody:
             raise ValueError("there are other bodies")
 
     def read(self) -> KinBody:
-        """Return the body with edits of the MJCF applied."""
+        """Return the body with the user's edits of the MJCF applied."""
         joints = [self._joint(number, joint) for number, joint in enumerate(self._body.all_joints)]
         links = [self._link(index, link) for index, link in enumerate(self._body.links)]
         count = len(self._body.joints)
@@ -178,7 +177,7 @@ class _OwnBody:
         )
 
     def _geometries(self, index: int, link: Link) -> tuple[Geometry, ...]:
-        """Return the shapes of a link: those in the text if they match the geoms, else shapes made from the geoms."""
+        """Return a link's shapes: those of ravemj's text if they match the geoms, else shapes made from the geoms."""
         model, number = self._model, self._bodies[index]
         first, count = int(model.body_geomadr[number]), int(model.body_geomnum[number])
         if self._names.decomposed:
@@ -196,7 +195,7 @@ class _OwnBody:
         return tuple(built.geometries)
 
     def _is_geom(self, attributes: dict[str, Attribute | None], geom: int) -> bool:
-        """Return whether a geom has the attributes of the writer's output."""
+        """Return whether a geom of the MJCF has the attributes that ravemj would write."""
         shapes, kind = self._reader.shapes, str(attributes["type"])
         if kind != shapes.kind(geom) or attributes.get("mesh") != shapes.mesh_name(geom):
             return False
@@ -210,7 +209,7 @@ class _OwnBody:
         return _same_pose(expected, there) and _near(_floats(attributes["rgba"]), rgba, _COLOUR_NEAR)
 
     def _joint(self, number: int, joint: Joint) -> Joint:
-        """Return a joint of the kinematic tree, with edits applied."""
+        """Return a joint with the user's edits applied, if it places a link of the kinematic tree."""
         if not joint.places_child or self._placing.get(joint.child) != number:
             return joint
         T_parent_child, names = self._pose(joint.child), self._names.joints[number]
@@ -252,7 +251,7 @@ class _OwnBody:
         return axis if _near(axis.max_torque, torque) else replace(axis, max_torque=torque)
 
     def _adjacent(self) -> tuple[Pair, ...]:
-        """Return the adjacent pairs, updated for added and removed excludes."""
+        """Return the adjacent link pairs, updated by ``<exclude>`` elements added and removed in the MJCF."""
         links = {number: link for link, number in enumerate(self._bodies)}
         expected = {ordered_pair(*(self._reader.number_of(name) for name in pair)) for pair in self._names.excludes}
         pairs = {ordered_pair(*divmod(int(signature), 1 << 16)) for signature in self._model.exclude_signature}
@@ -262,7 +261,7 @@ class _OwnBody:
         return (*(pair for pair in self._body.adjacent if ordered_pair(*pair) not in lost), *added)
 
     def _with_tools(self, body: KinBody) -> KinBody:
-        """Return a body with the tools moved to their sites."""
+        """Return a body whose tools are at their sites in the MJCF."""
         sites = {site.name: site for site in self._reader.compiled.spec.sites}
         arms = list(body.manipulators)
         for index, arm in enumerate(arms):

@@ -52,7 +52,7 @@ def _meet(first: set[tuple[int, int]], second: set[tuple[int, int]]) -> bool:
 
 
 def _are_filtered(model: mujoco.MjModel, body: int, other: int) -> bool:
-    """Return whether two bodies are fixed to each other, or one is a child of the other's weld group."""
+    """Return whether MuJoCo ignores collisions of two bodies: they are fixed together, or parent and child."""
     first, second = int(model.body_weldid[body]), int(model.body_weldid[other])
     if first == second:
         return True

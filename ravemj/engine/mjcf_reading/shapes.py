@@ -33,7 +33,7 @@ VISUAL_GROUP = "visual"
 """Group of shapes for non-colliding geoms, as in URDF."""
 
 _GRAY = (0.5, 0.5, 0.5, 1.0)
-"""Default colour of geoms."""
+"""MuJoCo's default colour of geoms."""
 
 _FIRST_HIDDEN_GROUP = 3
 _THICKNESS, _REACH = 0.005, 5.0
@@ -52,7 +52,7 @@ _SHAPES: dict[int, Callable[[Vec3], Shape]] = {
 
 
 class _GeomRole(NamedTuple):
-    """Properties that determine how a geom is read."""
+    """Properties that determine whether a geom is drawn and collides."""
 
     number: int
     collides: bool
@@ -128,7 +128,7 @@ class GeomReader:
         return self._meshes[number]
 
     def _geom(self, index: int) -> _GeomRole:
-        """Return whether a geom is drawn and collides. World floors are not drawn, since viewers draw their own."""
+        """Return how a geom is used. World floors are not drawn, since viewers draw their own."""
         group = int(self._model.geom_group[index])
         is_floor = self._model.geom_type[index] == _Type.mjGEOM_PLANE and self._model.geom_bodyid[index] == 0
         is_seen = group < _FIRST_HIDDEN_GROUP and self._rgba(index)[3] > 0 and not is_floor
@@ -154,7 +154,7 @@ class GeomReader:
         )
 
     def _rgba(self, index: int) -> tuple[float, float, float, float]:
-        """Return colour and opacity as the shortest decimals of single-precision values, as in the file."""
+        """Return colour and opacity of a geom, rounded to the decimals in the file."""
         rgba, material = self._model.geom_rgba[index], int(self._model.geom_matid[index])
         if material >= 0 and tuple(rgba.tolist()) == _GRAY:
             rgba = self._model.mat_rgba[material]
@@ -176,7 +176,7 @@ class GeomReader:
         return _SHAPES[kind](size) if kind in _SHAPES else None, T_link_geom, None
 
     def _mesh(self, index: int, T_link_geom: Pose) -> tuple[Shape | None, Pose, MeshFile | None]:
-        """Return a mesh in the frame of its file; MuJoCo has moved it to its centre."""
+        """Return a mesh with its pose and file, in the file's frame, although MuJoCo has moved it to its centre."""
         number, written = int(self._model.geom_dataid[index]), self._written[index]
         if number < 0:
             return None, T_link_geom, None
@@ -203,7 +203,7 @@ class GeomReader:
         return Mesh(vertices, model.mesh_face[first : first + count].astype(np.int_)), file
 
     def _terrain(self, number: int) -> Mesh:
-        """Return the upper surface of a height field with its base, as triangles."""
+        """Return a height field, upper surface and base, as a triangle mesh."""
         model = self._model
         rows, columns = int(model.hfield_nrow[number]), int(model.hfield_ncol[number])
         first = int(model.hfield_adr[number])

@@ -26,7 +26,7 @@ _TOOL = re.compile(
 """Pattern of tool site names, derived from 525 public models."""
 
 _BACK = Pose((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))
-"""MuJoCo's cameras look along -z with y up, OpenRAVE's along z with y down."""
+"""Rotation between camera frames: MuJoCo's look along -z with y up, OpenRAVE's along z with y down."""
 
 _SIZE = (640, 480)
 """Default image size of a camera [pixels]."""
@@ -44,7 +44,7 @@ def add_manipulators(reader: TreeReader, trees: Sequence[BodyTree], context: Con
 
 
 def _robot_tree(tree: BodyTree) -> RobotTree:
-    """Convert links and joints to those of a URDF, for guessing arms."""
+    """Convert links and joints to a URDF-like tree, for guessing arms."""
     links, joints = tree.builder.links, list[UrdfJoint]()
     for joint in tree.builder.joints:
         parent, child = (links[index].name for index in joint.links)

@@ -135,7 +135,7 @@ class TreeReader:
         builder.is_robot = builder.is_robot or bool(joints)
 
     def _between(self, body_name: str, joint: int, body: int) -> LinkBuilder:
-        """Return the massless link after one of several joints of a body."""
+        """Return the massless link between two joints of the same body."""
         name = self.names.link(f"{body_name}/{self.names.joints[joint]}")
         return LinkBuilder(name, self.source(body), self._poses[body], inertial=MASSLESS)
 

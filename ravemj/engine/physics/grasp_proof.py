@@ -135,7 +135,7 @@ class _Experiment:
                     self._data.qpos[self._model.jnt_qposadr[joint]] = kinematics.qpos[place]
 
     def _prepare_contacts(self, names: BodyNames) -> None:
-        """Set the friction of all geoms, and let only the hand touch the object."""
+        """Set the friction of all geoms, and disable contacts of other links than the hand's."""
         model = self._model
         model.geom_friction[:, 0] = self._friction
         links = {model.body(name).id for index, name in enumerate(names.links) if index not in self._hand}
@@ -156,7 +156,7 @@ class _Experiment:
         data.qpos[place : place + 7] = [*pose.position, *pose.wxyz]
 
     def _pressing_forces(self, names: BodyNames) -> Floats:
-        """Return the forces of the fingers as ``qfrc_applied``."""
+        """Return the closing forces of the fingers as ``qfrc_applied``."""
         forces, dof = np.zeros(self._model.nv), 0
         signs = dict(zip(self._arm.gripper_dofs, self._arm.chucking_direction, strict=True))
         for joint, joint_names in zip(self._robot.joints, names.joints, strict=False):
@@ -208,5 +208,5 @@ def _fixed(robot: KinBody) -> KinBody:
 
 
 def _free(body: KinBody) -> KinBody:
-    """Return a body that can move."""
+    """Return a body without static links."""
     return replace(body, links=tuple(replace(link, static=False) for link in body.links))

@@ -77,7 +77,7 @@ class Physics:
         self._give_back()
 
     def _drive(self, applied: Floats) -> None:
-        """Apply the joint forces ``applied`` and those of the motors for the next time step."""
+        """Apply the joint forces ``applied`` and the motors' forces in the next time step."""
         driven = [state for state, loads in self._loads.items() if loads.motor is not None and state in self._bodies]
         if driven:
             self._data.qfrc_applied[:] = applied
@@ -109,7 +109,7 @@ class Physics:
         }
 
     def _add_grabs(self, spec: mujoco.MjSpec, written: Mjcf) -> None:
-        """Attach grabbed bodies, and exclude their ignored collisions."""
+        """Weld grabbed bodies to the links that grab them, and exclude their ignored collisions."""
         names = dict(zip(self._simulation.bodies, written.names, strict=True))
         for state, own in names.items():
             for grab in state.grabs:
@@ -126,7 +126,7 @@ class Physics:
                 spec.add_exclude(bodyname1=own.links[first], bodyname2=own.links[second])
 
     def _untested_pairs(self, state: BodyState) -> set[tuple[int, int]]:
-        """Return the pairs of a body's links that do not collide, by index."""
+        """Return the pairs of link indices of a body that are not tested for self-collisions."""
         pairs = set(itertools.combinations(range(len(state.scene.links)), 2))
         return pairs.difference(tested_pairs(self._simulation.collisions(), state)) if self.self_collisions else pairs
 
@@ -182,7 +182,7 @@ class Physics:
         return float(np.linalg.norm(self._simulation.gravity)) * float(masses.mean()) if len(masses) else 0.0
 
     def _touches(self) -> list[tuple[tuple[int, int], Floats, Floats]]:
-        """Return for each contact its two bodies, its point [m], and the force on the second body [N]."""
+        """Return both body indices, the point [m], and the force on the second body [N] of each active contact."""
         touches: list[tuple[tuple[int, int], Floats, Floats]] = []
         wrench = np.zeros(6)
         for index, contact in enumerate(self._data.contact):
@@ -202,12 +202,12 @@ class Physics:
         return int(body.body_ids[link])
 
     def _wrench(self, body_id: int, spatial: Floats, point: Floats) -> tuple[Floats, Floats]:
-        """Return the force and its torque about a point, from a spatial force about the tree's centre of mass."""
+        """Return force, and torque about ``point``, of a MuJoCo spatial force about the tree's centre of mass."""
         center = self._data.subtree_com[self._model.body_rootid[body_id]]
         return spatial[3:].copy(), spatial[:3] - np.cross(point - center, spatial[3:])
 
     def _give_back(self) -> None:
-        """Copy poses and velocities to the simulated bodies."""
+        """Copy poses and velocities from MuJoCo to the simulated bodies."""
         mujoco.mj_kinematics(self._model, self._data)
         mujoco.mj_comPos(self._model, self._data)
         mujoco.mj_comVel(self._model, self._data)

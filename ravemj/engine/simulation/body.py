@@ -259,7 +259,7 @@ class BodyState:
             self._carry(grab)
 
     def _carry(self, grab: GrabbedBody) -> None:
-        """Set the velocity of a grabbed body so that it moves rigidly with the grabbing link."""
+        """Set the velocity of a grabbed body to that of a rigid motion with the grabbing link."""
         carrier = self._velocities[grab.link]
         arm = grab.body.link_transform(0)[:3, 3] - self.link_transform(grab.link)[:3, 3]
         grab.body.set_velocity(carrier[:3] + cross_rows(carrier[3:], arm), carrier[3:])
@@ -381,7 +381,7 @@ class BodyState:
 
 
 def _still_moving(before: Joint, after: Joint) -> Joint:
-    """Return ``after``, still movable if ``before`` was: limits set by scripts do not weld (random api-91001-36)."""
+    """Return ``after``, marked as movable if ``before`` was: limits set by scripts must not weld a joint."""
     return replace(after, keeps_moving=True) if after.static and not before.static else after
 
 

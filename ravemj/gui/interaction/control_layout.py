@@ -160,7 +160,7 @@ class ControlLayout(NamedTuple):
 
 
 def _bar(playing: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
-    """Return the rectangles of the playback controls; clock and speed are omitted on narrow views."""
+    """Return the rectangles of the playback controls; narrow views omit clock and speed, or all controls."""
     room = size[0] - _LEFT - _RIGHT
     is_wide = room >= 3 * _ICON + _SHORTEST_TRACK + _CLOCK + _SPEED
     if not playing or room < 3 * _ICON + _SHORTEST_TRACK:
@@ -176,7 +176,7 @@ def _bar(playing: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
 
 
 def _time_bar(time: list[Control], size: tuple[int, int], row: int) -> dict[Control, Rect]:
-    """Return the rectangles of the controls of simulation time, ``row`` rows above the bottom row."""
+    """Return the rectangles of the simulation time controls, ``row`` rows above the bottom; none if too narrow."""
     widths = (_ICON, _ICON, _PASSED, _SPEED)
     if not time or size[0] - _LEFT - _RIGHT < sum(widths):
         return {}
@@ -186,13 +186,12 @@ def _time_bar(time: list[Control], size: tuple[int, int], row: int) -> dict[Cont
 
 
 def _around(places: dict[Control, Rect]) -> Rect:
-    """Return the rectangle around the controls of a row."""
     first, *_, last = places.values()
     return first._replace(width=last.x + last.width - first.x)
 
 
 def _column(others: list[Control], size: tuple[int, int]) -> dict[Control, Rect]:
-    """Return the rectangles of the buttons, in two columns if one is too long; none if there is no room."""
+    """Return the rectangles of the buttons, in more than one column if needed; none if there is no room."""
     if size[1] < _LOWEST_VIEW:
         return {}
     step = _COLUMN_HEIGHT + _GAP
@@ -207,7 +206,7 @@ def _column(others: list[Control], size: tuple[int, int]) -> dict[Control, Rect]
 
 
 def _menu(menu: list[Control], right: float, bottom: float) -> dict[Control, Rect]:
-    """Return the rectangles of a menu left of ``right``, with its bottom at most at ``bottom``."""
+    """Return the rectangles of the menu entries that fit between the column's top and ``bottom``, left of ``right``."""
     tops = takewhile(lambda top: top + _ENTRY_HEIGHT < bottom, count(_COLUMN_TOP, _ENTRY_HEIGHT))
     return {
         control: Rect(right - _ENTRY_WIDTH, top, _ENTRY_WIDTH, _ENTRY_HEIGHT - 1)

@@ -112,7 +112,7 @@ class ControlPanel:
             self._search = text
 
     def _select_next(self) -> None:
-        """Select the next search result."""
+        """Select the next link or body that the search finds, after the last selected one."""
         names = [row.name for row in self.controls.rows(self._search)[1:]]
         for name in self.controls.chosen[-1:]:
             if name in names:
@@ -122,7 +122,7 @@ class ControlPanel:
             self.controls.operate(names[0])
 
     def _set_value(self) -> None:
-        """Set a joint to the typed value, in the displayed unit."""
+        """Set a joint to the typed value, in the displayed unit; tell the user if it is not a number."""
         try:
             value = float(self._text)
         except ValueError:

@@ -189,7 +189,7 @@ class Controls:
         return Control(shortcut.name, label, shortcut.text, is_on=is_on, group="menu")
 
     def _body(self) -> BodyState | None:
-        """Return the body with joint sliders: the selected one, else the played one, else the first robot."""
+        """Return the body whose joints have sliders: the selected one, else a moving one, else the first robot."""
         selection, motion = self._selector.selection, self.playback.motion
         bodies = [] if selection is None else [selection.body]
         bodies += [] if motion is None else motion.bodies
@@ -197,7 +197,7 @@ class Controls:
         return next((body for body in bodies if body.scene.dof_axes), None)
 
     def _redundant_reach(self) -> "Reach | None":
-        """Return the last dragged redundant arm if its link is still selected and no menu covers its slider."""
+        """Return the drag of a redundant arm if its link is selected and no menu covers its slider, else None."""
         reach, selection = self.reach, self._selector.selection
         if reach is None or reach.free_dof is None or selection is None or self.unfolded not in {"", "joints"}:
             return None

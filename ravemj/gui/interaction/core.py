@@ -198,12 +198,12 @@ class Interaction:
         return None if at is None or is_fixed else self._selector.highlight(self.view, at, hit)
 
     def _lit(self, hit: Hit | None) -> int:
-        """Return MuJoCo's id of the highlighted link: the link under the pointer, else that selected in the tree."""
+        """Return MuJoCo's id of the link under the pointer, or else of that selected in the tree; -1 if none."""
         part = hit or (self._selector.selection if self.controls.unfolded == "tree" else None)
         return -1 if part is None else int(self._simulation.compiled().part(part.body).body_ids[part.link])
 
     def _pointed_at(self, hit: Hit | None) -> list[str]:
-        """Return the description of the point under the pointer, else of the clicked point."""
+        """Return a line that describes the point or control under the pointer, else the clicked point; or no line."""
         control = self._controller.layout.at(self._controller.pointer)
         text = self._selector.point_line()
         if hit is not None:
@@ -244,7 +244,7 @@ class Interaction:
 
 
 def _without_clicks(events: list[Event]) -> list[Event]:
-    """Drop the pointer events from the first press on."""
+    """Drop presses, moves and releases of the pointer, from the first press on."""
     presses = (number for number, event in enumerate(events) if isinstance(event, Press))
     first = next(presses, len(events))
     return [*events[:first], *(event for event in events[first:] if not isinstance(event, Press | Move | Release))]

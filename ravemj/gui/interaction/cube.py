@@ -15,7 +15,7 @@ from ravemj.model import drawing
 from ravemj.model.drawing import Primitives
 
 _MARGIN = 0.1
-"""Clearance between body and box, as a fraction of half its longest side."""
+"""Clearance between a body and its box handle, as a fraction of half the box's longest side."""
 
 _REACH, _REACH_BESIDE = 8.0, 12.0
 """Pick distance of an edge, in front of a face and beside the box [points]."""

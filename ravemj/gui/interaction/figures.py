@@ -35,16 +35,16 @@ _WIDTH = 2.5
 _ARC_STEP = np.radians(6)
 
 _FLOOR_REACH = 2.0
-"""Half the side of the grid [radii of the scene]."""
+"""Half the side of the floor grid, as a multiple of the scene's radius."""
 
 _STEPS = (0.1, 1.0, 10.0, 100.0, 1000.0)
-"""Allowed distances between grid lines [m]."""
+"""Possible distances between lines of the floor grid [m]."""
 
 _MOST_LINES = 24
-"""Maximum number of lines from the middle of the grid to a side."""
+"""Maximum number of lines from the middle of the floor grid to a side."""
 
 _BELOW = 1e-3
-"""Depth of the lines below z = 0 [radii of the scene], so that a floor of the model hides them without flicker."""
+"""Depth of the grid below z = 0, as a multiple of the scene's radius, so that floors hide it without flicker."""
 
 _LINES, _MARKS = (0.62, 0.62, 0.65, 0.5), (0.45, 0.45, 0.5, 0.9)
 _AXIS_WIDTH = 3.0
@@ -90,7 +90,7 @@ def _joints(simulation: Simulation, radius: float) -> list[Primitives]:
 
 
 def _joint(body: BodyState, dof: int, length: float) -> Primitives:
-    """Return the axis of a joint, and for hinges the sector between its limits and a line at its value."""
+    """Return a drawing of a joint axis; for revolute joints, also the sector of the limits and the present value."""
     joint, T_world_axis = joint_frame(body, dof)
     axis, value = body.scene.dof_axes[dof], float(body.kinematics.values()[dof])
     ends = np.array([[0.0, 0.0, -length], [0.0, 0.0, length]])
@@ -222,7 +222,7 @@ def floor_labels(center: Floats, radius: float) -> tuple[Label, ...]:
 
 
 def _step_and_reach(center: Floats, radius: float) -> tuple[float, float]:
-    """Return the distance between lines and half the side of the grid, in whole steps [m]."""
+    """Return the distance between lines and half the side of the floor grid, a whole number of steps [m]."""
     wanted = _FLOOR_REACH * radius + float(np.abs(center[:2]).max())
     step = next((step for step in _STEPS if wanted / step <= _MOST_LINES), _STEPS[-1])
     return step, step * min(max(math.ceil(wanted / step), 1), _MOST_LINES)

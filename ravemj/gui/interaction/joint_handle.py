@@ -20,7 +20,7 @@ SIZES = (1.0, 2.0, 4.0, 0.5)
 """Scale factors of the cylinder, selected by repeated clicks."""
 
 _RADIUS = 0.15
-"""Radius of the cylinder, as a fraction of the diagonal of the link's visible geometry."""
+"""Radius of the cylinder handle, as a fraction of the diagonal of the link's visible geometry."""
 
 _SMALLEST, _LARGEST = 0.02, 0.1
 """Bounds of the radius, as fractions of the diagonal of the body's visible geometry."""

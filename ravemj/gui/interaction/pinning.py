@@ -23,7 +23,7 @@ _PULL, _STAY = 0.1, 1e-6
 """Weights of the dragged point and of the posture task, relative to 1 for a pinned link."""
 
 _NEAR = 2e-3
-"""Distance from the pointer at which the drag has converged [m]."""
+"""Distance of the dragged link from the pointer at which the drag has converged [m]."""
 
 _TOLD = 1.5
 """Duration of the message that names blocking pins or limits [s]."""

@@ -157,7 +157,7 @@ class PointerController:
                 return True
 
     def _needs_controls_or_bodies(self, event: Event) -> bool:
-        """Return whether an event may concern a body or a control, based on the event and the controller alone."""
+        """Return whether an event may concern a body or a control, judged without access to either."""
         match event:
             case Press():
                 return self.needs_bodies(event)
@@ -292,7 +292,7 @@ class PointerController:
         self.cancel_drag()
 
     def _press_button(self, tool: ViewButton, press: Press) -> None:
-        """Press a mode button, or start a drag of a wheel."""
+        """Activate a mode button, or start a drag of a camera wheel."""
         if press.button is not Button.LEFT:
             return
         if tool in (ViewButton.INTERACT, ViewButton.CAMERA):
@@ -313,7 +313,7 @@ class PointerController:
     # --- the camera
 
     def _view_drag(self, press: Press, change: Callable[[float, float], Viewpoint]) -> _Follow:
-        """Return a drag callback that changes the view by the displacement of the pointer."""
+        """Return a drag callback that passes the pointer's displacement to ``change`` and shows the resulting view."""
 
         def follow(x: float, y: float) -> None:
             self.view = replace(change(x - press.x, y - press.y), size=self.view.size)
@@ -335,7 +335,7 @@ class PointerController:
             self.view = self.view.centred(hit.position)
 
     def _start_drag(self, press: Press) -> _Follow | None:
-        """Start a drag of the handle under the press, else, for a finger, of the view."""
+        """Start a drag of the handle or link under the press, or, by touch, of the view; None if nothing moves."""
         takes = self.mode is Mode.INTERACTION and not self._selector.is_fixed
         if takes and ((press.ctrl and press.shift) or self._controls.pulls):
             return self._start_reach(press)
@@ -347,7 +347,7 @@ class PointerController:
         return self._view_drag(press, self._navigation.focused().turned) if press.touch else None
 
     def _start_reach(self, press: Press) -> _Follow | None:
-        """Start an inverse-kinematics drag of the link under the press."""
+        """Start a drag of the link under the press by inverse kinematics; None if there is no link that can move."""
         self._reach = reach = self._selector.start_reach(self.view, press)
         if reach is None:
             return None
@@ -356,7 +356,7 @@ class PointerController:
         return lambda x, y: reach.follow(self.view.ray(x, y))
 
     def _start_pull(self, press: Press) -> _Follow | None:
-        """Start pulling the link under the press with a force."""
+        """Start pulling the link under the press by a force; None if there is no link or no physics."""
         hit = pick(self._simulation, self.view.ray(press.x, press.y))
         if hit is None:
             return None

@@ -23,13 +23,13 @@ _TURNING = 0.03
 
 _WEIGHTS = np.array([1.0, 1.0, 1.0, _TURNING, _TURNING, _TURNING])
 _SWEEP = 0.08
-"""Length of a null-space step per wheel step, in joint space [rad]."""
+"""Length of a null-space motion per wheel step [rad]."""
 
 _MOST_STEPS = 100
-"""Maximum number of null-space steps towards a slider value."""
+"""Maximum number of null-space steps towards a value of the redundant joint."""
 
 _CLOSE = 1e-4
-"""Tolerance of the joint value [rad or m]."""
+"""Accuracy at which the redundant joint has reached its value [rad or m]."""
 
 _STUCK = 0.1
 """Minimum motion of the redundant joint, as a fraction of a step; below it, limits of other joints stop the arm."""
@@ -75,10 +75,7 @@ class Reach:
         self._free = self._free_joint()
 
     def _free_joint(self) -> int | None:
-        """Return the redundant joint, whose value is arbitrary while the link keeps its pose; None if there is none.
-
-        Of several candidates it is the joint that moves most in the null space.
-        """
+        """Return the index of the redundant joint, the one that moves most in the null space; None if there is none."""
         if self._solver.free:
             return self._solver.free[0]
         chain = self._solver.chain
@@ -103,7 +100,7 @@ class Reach:
             self._come_near(self._values)
 
     def _come_near(self, start: Floats) -> None:
-        """Minimize the distance to the goal from start values."""
+        """Move the arm as near to the goal as a numeric search from ``start`` gets."""
         T_base_goal = inverse(self.body.link_transform(self._base)) @ self._T_world_goal
         values = self.body.kinematics.values()
         values[self._dofs] = self._solver.numeric.nearest(T_base_goal, start, _WEIGHTS).values
@@ -136,7 +133,7 @@ class Reach:
                 return
 
     def _self_motion(self, free: int) -> Floats:
-        """Return the unit null-space velocity that moves a joint most; zeros if the joint cannot move."""
+        """Return the unit null-space velocity in which joint ``free`` moves most; zeros if it cannot move."""
         basis = null_space(self._solver.chain, self._values)
         along = basis @ basis[free]
         return along / max(float(np.linalg.norm(along)), np.finfo(float).tiny)
@@ -163,13 +160,17 @@ class Reach:
 
 
 def _ghost(points: Floats) -> Primitives:
-    """Return the drawing of an arm in one configuration."""
+    """Return a drawing of the arm in another configuration, as lines between ``points``."""
     colours = np.tile(_GHOST, (len(points), 1))
     return drawing.merge([drawing.line_strip(points, _WIDTH, colours), drawing.points(points, 2 * _WIDTH, colours)])
 
 
 def _arm_to(body: KinBody, base: int, link: int, place: Floats) -> Manipulator:
-    """Return the arm from link ``base`` to a point [m] in the frame of another link."""
+    """Return a manipulator from link ``base`` to the point ``place`` [m] of ``link``.
+
+    Raises:
+        ValueError: no joint moves the link.
+    """
     way = chain(body, base, link) or []
     moving = [index for index in way if index < len(body.joints) and not body.joints[index].static]
     if not moving:
@@ -190,7 +191,7 @@ def _arm_to(body: KinBody, base: int, link: int, place: Floats) -> Manipulator:
 
 
 def _root_of(body: KinBody, link: int) -> int:
-    """Return the first link of the joint chain to a link."""
+    """Return the first link of the kinematic chain to a link."""
     above = {joint.child: joint.parent for joint in body.all_joints if joint.places_child}
     while link in above:
         link = above[link]

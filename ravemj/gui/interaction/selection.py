@@ -114,7 +114,7 @@ class Selector:
         self._select_joint(*self._aimed(view, body, joint.child), dof)
 
     def _aimed(self, view: Viewpoint, body: BodyState, link: int) -> tuple[Hit, ViewRay]:
-        """Return a visible point of a link, else its centre, and the ray to it."""
+        """Return a visible point of a link, or its centre if hidden, and the viewing ray to its centre."""
         box = visible_box(body, [link], np.eye(4))
         center = body.link_transform(link)[:3, 3] if box is None else box.center
         way = center - view.camera.position
@@ -135,7 +135,7 @@ class Selector:
             self.selection = replace(self._selection(hit), dof=self._next_axis(hit.body, dof))
 
     def _next_axis(self, body: BodyState, first: int) -> int:
-        """Return the next DOF of a joint if it is already selected, else its first one."""
+        """Return the first DOF of a joint; if one of its DOFs is already selected, the next one."""
         old = self.selection
         joint, _ = joint_and_axis(body, first)
         number = -1
@@ -286,7 +286,7 @@ def point_line(body: BodyState, link: int, position: Floats, normal: Floats) -> 
 
 
 def _joint_line(body: BodyState, dof: int) -> str:
-    """Return as text the name of a joint, and the index and the value of one of its DOFs, in rad and degrees or m."""
+    """Describe a DOF: joint name, DOF index and value, in rad and degrees or in m."""
     joint, axis = joint_and_axis(body, dof)
     value = float(body.kinematics.values()[dof])
     shown = f"{value:z.3f} m" if joint.slides(axis) else f"{value:z.3f} rad, {math.degrees(value):z.1f} deg"

@@ -135,7 +135,7 @@ class TimeControls:
                 self._notices.say(f"The step failed: {error}")
 
     def _change_speed(self, *, has_motion: bool, is_faster: bool) -> None:
-        """Change the speed of the motion, or of simulation time if there is no motion."""
+        """Select the next faster or slower speed, of the motion's playback or else of simulation time."""
         clock = self._simulation.clock
         speed = self.playback.speed if has_motion or clock is None else clock.pace
         others = [other for other in SPEEDS if (other > speed if is_faster else other < speed)]

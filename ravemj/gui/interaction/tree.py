@@ -9,7 +9,7 @@ from ravemj.gui.interaction.selection import Selection, Selector
 from ravemj.gui.interaction.viewpoint import Viewpoint
 
 _NAME = re.compile(r"(?P<kind>body|link|joint) (?P<body>[0-9]+)(?: (?P<number>[0-9]+))?")
-"""Pattern of row names; the row of a body selects its first link."""
+"""Pattern of control names of tree rows; the row of a body selects its first link."""
 
 
 class TreeRow(NamedTuple):

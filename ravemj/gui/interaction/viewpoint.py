@@ -67,7 +67,7 @@ class Viewpoint:
         return self._placed(rotation, self.focus, self.distance)
 
     def _turned_upright(self, azimuth: float, elevation: float) -> "Viewpoint":
-        """Orbit about the world's z axis, and in elevation up to the poles [rad]."""
+        """Orbit about the world's z axis by ``azimuth``, and up by ``elevation``, at most to the poles [rad]."""
         rotation = _level(self.camera.rotation)
         height = math.asin(min(max(-float(rotation[2, 2]), -1.0), 1.0))  # elevation of the eye above the focus
         tilt = min(max(height + elevation, -math.pi / 2), math.pi / 2) - height

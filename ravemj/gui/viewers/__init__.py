@@ -59,7 +59,7 @@ def open_viewer(simulation: Simulation, renderer: SimulationRenderer, name: str,
 
 
 def _choice(name: str) -> tuple[str, str]:
-    """Return the kind of viewer for a name, and the reason if it differs from the name."""
+    """Return the kind of viewer to open for a name, and the reason if another kind was requested."""
     if name in ("web", "offscreen"):
         return name, ""
     if has_display():

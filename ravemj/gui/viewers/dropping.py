@@ -21,7 +21,7 @@ _MODELS = {".xml", ".dae", ".zae", ".json", ".urdf", ".xacro"}
 _MANIFEST = "package.xml"  # of a package of ROS: no model
 _NAMED = 5
 _SHOWN = 20.0
-"""Duration of messages about files that cannot be added [s]."""
+"""Display time of messages about files that cannot be added [s]."""
 
 
 def add_files(
@@ -69,10 +69,10 @@ def _add(env: Host, paths: Sequence[str], notices: Notices) -> None:
 
 
 def _unpacked(path: str, folder: str) -> str:
-    """Unpack a zip archive and return the new folder; return the path of any other file or folder unchanged.
+    """Unpack a zip archive and return ``folder``; return any other path unchanged.
 
     Raises:
-        SourceError: the archive is damaged or too large, or has names outside of the folder.
+        SourceError: the archive is damaged or too large, or contains names outside of the folder.
     """
     if not path.lower().endswith(".zip"):
         return path

@@ -20,7 +20,7 @@ from ravemj.gui.viewers.sharpness import bounded_size
 
 _FPS = 30
 _LONGEST_END = 5.0
-"""Maximum time that closing a viewer waits for unfinished files [s]."""
+"""Maximum time that closing a viewer waits for unfinished recordings [s]."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -152,7 +152,7 @@ class Recorder:
                 return
 
     def _frames_of_clock(self) -> Iterator[bool]:
-        """Yield for each frame time whether to render; False repeats the last frame, to catch up."""
+        """Wait for each frame time and yield whether to render; False repeats the last frame, if rendering is late."""
         start = self._clock()
         for count in itertools.count():
             late = self._clock() - start - count / _FPS
@@ -170,7 +170,7 @@ def _write_picture(path: Path, source: FrameSource) -> None:
 
 
 def _frames_of_motion(playback: Playback) -> Iterator[bool]:
-    """Seek through a motion frame by frame."""
+    """Seek through a motion, and yield True at each frame; stop if another motion is loaded."""
     motion, step = playback.motion, playback.speed / _FPS
     playback.pause()
     for count in range(math.ceil(playback.duration / step - 1e-6) + 1):

@@ -12,7 +12,7 @@ _PERIOD, _QUIET_PERIOD = 1 / 60, 1 / 30
 """Polling period for changes, and the longer one after ``_QUIET`` [s]."""
 
 _QUIET = 1.0
-"""Time without changes after which the longer polling period is used [s]."""
+"""Time without changes after which viewers poll less often [s]."""
 
 _SPARE = 0.7
 """Fraction of the time budget in which a sharper level must be drawn before it is selected (hysteresis)."""

@@ -129,7 +129,7 @@ class Viewer(Interactive):
         self._ask_window("show_window" if showtype else "hide_window")
 
     def _ask_window(self, function: str, *arguments: object) -> None:
-        """Call a GLFW function in the thread of the window; no effect without a window."""
+        """Call a GLFW function in the window's thread; viewers without a window ignore it."""
 
     def SetTextSize(self, size: float) -> None:
         """Set the size of the text in the corner.
@@ -422,7 +422,7 @@ class Viewer(Interactive):
 
 
 def _checked_size(width: float, height: float, caller: str) -> tuple[int, int]:
-    """Return a size in whole pixels; raise ``ArgumentError`` if it is out of range."""
+    """Return an image size in whole pixels; raise an ArgumentError if it is out of range."""
     size = checked_vector([width, height], 2, f"{caller}: size")
     if size.min() < 1 or size.max() > _LARGEST:
         limits = f"1 x 1 to {_LARGEST} x {_LARGEST}"

@@ -28,7 +28,7 @@ _LOG = logging.getLogger("ravemj")
 _WIDTH, _HEIGHT = 960, 720
 _PERIOD = 1 / 60
 _SLOW = 1.5 * _PERIOD
-"""Drawing time of a frame [s] above which the processor, not the screen, is the limit, and the script gets time."""
+"""Drawing time [s] above which the processor, not the screen, limits the frame rate, so that the script gets time."""
 
 _LONGEST_SYNC = 1.0
 _FARTHEST = 32767
@@ -143,7 +143,7 @@ class WindowViewer(Viewer):
         return period(time.monotonic() - self._changed_at)
 
     def _handle_view_events(self, window: GlfwWindow, painter: WindowRenderer, now: float) -> bool:
-        """Handle view events while other threads hold the lock; return whether to draw."""
+        """Handle only view events, while others hold the simulation's lock; return whether to draw."""
         size = [Resize(*window.points)] if self.interaction.view.size != window.points else []
         window.events = self.interaction.handle_view_events([*size, *window.events])
         self.interaction.advance_view(now)
@@ -163,7 +163,7 @@ class WindowViewer(Viewer):
         )
 
     def _handle_events(self, window: GlfwWindow, painter: WindowRenderer) -> bool:
-        """Handle the events; return whether to draw."""
+        """Handle all events under the simulation's lock; return whether to draw."""
         try:
             if self.interaction.view.size != window.points:
                 self.interaction.handle(Resize(*window.points))
@@ -203,7 +203,7 @@ class WindowViewer(Viewer):
             window.dropped = []
 
     def _grant(self, request: Request | str, window: GlfwWindow) -> None:
-        """Perform a requested action that needs the window."""
+        """Perform an action that needs the window, such as a picture, a video or copying text."""
         source = FrameSource(self.interaction, self._renderer, self.look, window.pixel_ratio)
         if request is Request.PICTURE:
             self._recorder.save_picture(source)
@@ -260,7 +260,7 @@ def _end(thread: threading.Thread) -> None:
 
 @before_end
 def _end_all() -> None:
-    """Wait for the threads of windows: Python must not exit while OpenGL draws."""
+    """Close all windows and wait for their threads: Python must not exit while OpenGL draws."""
     for thread in list(_running):
         _end(thread)
 

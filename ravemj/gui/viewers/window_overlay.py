@@ -102,13 +102,13 @@ class OverlayPainter:
         return float(_font(self._letters(size)).getlength(text)) / self._ratio
 
     def _text(self, text: str, x: float, y: float, rgb: _Rgb, *, halo: bool = False) -> None:
-        """Draw a text centred at a point."""
+        """Draw a text centred at (x, y) [points]."""
         image = text_image(text, self._letters(_SIZE), rgb, halo)
         rows, columns = image.shape[:2]
         self._image(image, round(x * self._ratio - columns / 2), round(y * self._ratio - rows / 2))
 
     def _line(self, text: str, x: float, y: float, rgb: _Rgb, size: float = _SIZE) -> None:
-        """Draw a text that starts at a point."""
+        """Draw a text that starts at (x, y), its top left corner [points]."""
         self._image(text_image(text, self._letters(size), rgb), round(x * self._ratio), round(y * self._ratio))
 
     def _rectangle(self, rect: Rect, rgba: tuple[float, float, float, float]) -> None:
@@ -117,7 +117,7 @@ class OverlayPainter:
         mujoco.mjr_rectangle(mujoco.MjrRect(left, self._pixels[1] - bottom, right - left, bottom - top), *rgba)
 
     def _image(self, image: NDArray[np.uint8], left: int, top: int) -> None:
-        """Blend an image over the window, clipped to it."""
+        """Blend an image into the window, clipped at its border; ``left`` and ``top`` are in pixels."""
         width, height = self._pixels
         part = image[max(-top, 0) : height - top, max(-left, 0) : width - left]
         if part.size:

@@ -61,7 +61,7 @@ class Wrist:
         return [turn, two, turn_between(last, self.side, middle.turned_back(two, side))]
 
     def _middle(self, tip: Floats) -> Floats:
-        """Return both solutions of the middle joint, as cosine and sine, for a direction ``tip`` of the last axis.
+        """Return both solutions of the wrist's middle joint, as cosine and sine, for a direction of the last axis.
 
         They are computed from distances of unit vectors, since the cosine of the angle would lose half of the digits
         if the outer axes nearly coincide.
@@ -132,7 +132,7 @@ class Planar:
         return [three, two, one] if self.backward else [one, two, three]
 
     def _solve_between(self, motion: RigidMotion) -> list[Floats]:
-        """Solve for a revolute joint between two prismatic ones: its angle follows from the rotation."""
+        """Solve a block with a revolute joint between two prismatic ones: the angle follows from the rotation."""
         first, middle, last = self._order
         turn = turn_between(middle, self._side, motion.turned(self._side))
         way = motion.moved(middle.point) - middle.point

@@ -11,7 +11,7 @@ from ravemj.ik.vectors import Floats, Screw, cross, dot, tile
 
 Screws = Sequence[Screw]
 _NEAR = 1e-9
-"""Tolerance of zero lengths, divided by the reach, and of zero sines of angles in the arm's geometry."""
+"""Length, divided by the reach, or sine of an angle between axes that counts as zero."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ class CarryPlane:
         return [one, turn_between(middle, after, before), three]
 
     def _solve_sliding(self, screws: Screws, start: Plane, goal: Plane) -> list[Floats]:
-        """Turn the normal by the revolute joints (subproblem 2), then move the plane by the prismatic one."""
+        """Turn the normal by the two revolute joints (subproblem 2), then move the plane by the prismatic one."""
         first, second = (screw for screw in screws if not screw.prismatic)
         along, across, later = second.split(start.normal)
         rest = dot(first.axis, goal.normal) - dot(first.axis, along)
@@ -172,7 +172,7 @@ class NoFamilyError(Exception):
 
 
 def _plane_side(joint: Screw, middle: Screw, foot: Floats, plane: Plane, sign: float) -> Side:
-    """Return the invariants of a plane under the middle joint: tilt against its axis, and offset from a point on it."""
+    """Return the invariants of a plane moved by ``joint``: tilt against the middle axis, and distance from ``foot``."""
     direction = Screw(joint.axis, np.zeros((3, 1, 1)))
     side = Measure(middle.axis, joint.point - foot, sphere=False).side(direction, plane.normal, sign)
     offset = dot(plane.normal, plane.point - joint.point)
@@ -188,12 +188,12 @@ def _names(pair: Pair) -> list[tuple[int, int]]:
 
 
 def _foot(screws: Screws) -> int:
-    """Return the joint, 0 or 2, whose axis intersects that of the middle joint; 1 if none does."""
+    """Return the revolute joint, 0 or 2, whose axis intersects that of the middle joint; 1 if none does."""
     return next((side for side in (0, 2) if not screws[side].prismatic and _meet(screws[1], screws[side])), 1)
 
 
 def _meet(first: Screw, other: Screw) -> bool:
-    """Return whether two axes intersect without being parallel, in all examples."""
+    """Return whether two axes intersect without being parallel, in all example configurations."""
     normal = cross(*np.broadcast_arrays(first.axis, other.axis))
     if np.sqrt(dot(normal, normal)).min() < _NEAR:
         return False
@@ -201,7 +201,7 @@ def _meet(first: Screw, other: Screw) -> bool:
 
 
 def _nearest(first: Screw, other: Screw) -> Floats:
-    """Return the point of an axis nearest to another axis."""
+    """Return the point on the axis of ``first`` nearest to the axis of ``other``."""
     away, cosine = other.point - first.point, dot(first.axis, other.axis)
     distance = (dot(away, first.axis) - cosine * dot(away, other.axis)) / (1 - cosine * cosine)
     return first.point + distance * first.axis

@@ -24,11 +24,11 @@ from ravemj.ik.vectors import Floats, Screw, Transform, constant, cross, dot, pe
 
 _GRID: Floats = np.array([0.0, 2 * np.pi / 3, 4 * np.pi / 3])
 _FIT = np.linalg.inv(np.stack([np.ones(3), np.cos(_GRID), np.sin(_GRID)], axis=1))
-"""Matrix from values at three angles to coefficients of 1, cos and sin."""
+"""Matrix that fits the coefficients of 1, cos and sin to a function's values at the three angles of ``_GRID``."""
 _HALF = np.array([[1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [0.0, 2.0, 0.0]])
-"""Rows 1, cos and sin as polynomials of a half-angle tangent, multiplied by 1 + t²."""
+"""1, cos and sin as quadratic polynomials of the half-angle tangent t, multiplied by 1 + t²; one per row."""
 _ORIGINS = (0.731, -1.173, 2.517)
-"""Generic angles of joints 3, 4 and 5 at which their half-angle tangents are 0."""
+"""Zeros of the half-angle tangents of joints 3, 4 and 5 [rad]; generic, to avoid infinite tangents."""
 _BRANCHES = 16
 _UNIT = np.einsum("x,y,z->xyz", *[_HALF[0]] * 3).reshape(3, 9)
 
@@ -87,7 +87,7 @@ class General:
 
 
 def _left(screws: Sequence[Screw]) -> Floats:
-    """Return the coefficients of the left sides, shape (N, 14, 27), for powers up to 2 of three half-angle tangents."""
+    """Return the left sides of the 14 loop equations, (N, 14, 27), as coefficients of three half-angle tangents."""
     turns = [turn_of((_GRID + origin).reshape(3, 1)) for origin in _ORIGINS]
     places = np.indices((3, 3, 3)).reshape(3, 27)
     values = _carried(screws, [turn[:, place] for turn, place in zip(turns, places, strict=True)])
@@ -97,7 +97,7 @@ def _left(screws: Sequence[Screw]) -> Floats:
 
 
 def _carried(screws: Sequence[Screw], turns: Sequence[Floats]) -> Floats:
-    """Return the fourteen quantities of the elimination, (14, B, N), for cosines and sines of joints 3, 4 and 5."""
+    """Return the left sides of the 14 loop equations, (14, B, N), for cosines and sines of joints 3, 4 and 5."""
     line, point = screws[5].axis, screws[5].point
     for screw, turn in zip(screws[4:1:-1], turns[::-1], strict=True):
         line, point = screw.turned(turn, line), screw.moved(turn, point)
@@ -124,10 +124,10 @@ def _numbers(line: Floats, point: Floats) -> Floats:
 
 
 def _eigen(matrix: Floats) -> list[Floats]:
-    """Return the half-angle tangents of joints 3, 4 and 5, each (16, N), for which M(t3) times monomials is 0.
+    """Return the half-angle tangents of joints 3, 4 and 5, each (16, N), by an eigenvalue problem.
 
-    ``matrix`` contains, for powers 0, 1, 2 of the first tangent, six equations in monomials x^i y^j, i and j up to 2,
-    shape (N, 3, 6, 9).
+    ``matrix`` has shape (N, 3, 6, 9): for powers 0, 1, 2 of the first tangent, six equations in the monomials x^i y^j
+    of the others, i and j up to 2. At the roots it is singular, with the monomials in its null space.
     """
     count = len(matrix)
     whole = np.zeros((count, 3, 12, 12))
@@ -151,7 +151,7 @@ def _eigen(matrix: Floats) -> list[Floats]:
 
 
 def _ratio(low: NDArray[np.complex128], high: NDArray[np.complex128]) -> Floats:
-    """Return the ratio of monomials that differ by one power, shape (16, N), from the largest pair."""
+    """Return a tangent, shape (16, N), as the quotient of the largest two monomials that differ by one power of it."""
     low, high = (part.reshape(len(part), -1, part.shape[-1]) for part in (low, high))
     best = np.argmax(np.abs(low) + np.abs(high), axis=1)[:, None]
     below, above = np.take_along_axis(low, best, axis=1)[:, 0], np.take_along_axis(high, best, axis=1)[:, 0]

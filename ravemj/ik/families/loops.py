@@ -138,7 +138,7 @@ Step = Callable[[Screw, Floats, Floats], Floats]
 
 
 class _Around:
-    """Joints around a block with their values: B⁻¹ = W⁻¹ F1 F2 F3 K."""
+    """Joints F1, F2, F3 around a block, with their values; for the block's motion B, B⁻¹ = goal⁻¹ F1 F2 F3 rest."""
 
     def __init__(
         self, screws: Sequence[Screw], values: Sequence[Floats], goal: Transform | None, rest: Transform | None
@@ -147,11 +147,11 @@ class _Around:
         self._goal, self._rest = goal, rest
 
     def needed(self) -> RigidMotion:
-        """Return the required block motion B = K⁻¹ F3⁻¹ F2⁻¹ F1⁻¹ W."""
+        """Return the motion that the block must make: rest⁻¹ F3⁻¹ F2⁻¹ F1⁻¹ goal."""
         return self._motion(self._goal, self._rest, self._pairs, Screw.turned_back, Screw.moved_back)
 
     def opposite(self) -> RigidMotion:
-        """Return the inverse of the motion B that the block of joints has to make."""
+        """Return the inverse of the motion that the block must make."""
         return self._motion(self._rest, self._goal, self._pairs[::-1], Screw.turned, Screw.moved)
 
     def _motion(
@@ -162,7 +162,7 @@ class _Around:
         turn: Step,
         move: Step,
     ) -> RigidMotion:
-        """Return the composition of a transform, joint motions, and the inverse of another transform."""
+        """Return the composition of ``first``, the motions of ``pairs``, and the inverse of ``last``."""
         back = None if last is None else last.inverse()
 
         def turned(vectors: Floats) -> Floats:

@@ -77,7 +77,7 @@ class OnePose:
         ]
 
     def _outer(self, start: Vector, goal: Vector) -> list[tuple[Turn, Turn]]:
-        """Return first and third joint (cosine, sine), by branch, of three joints that carry the centre to a goal."""
+        """Return, by branch, cosine and sine of the first and third of three joints that move ``start`` to ``goal``."""
         sides = self._numbers(self._arm[0], goal, -1.0), self._numbers(self._arm[2], start, 1.0)
         rest = sides[1][0][0] - sides[0][0][0], sides[1][0][1] - sides[0][0][1]
         side, equation = self._alone
@@ -100,7 +100,7 @@ class OnePose:
         return turns_found
 
     def _numbers(self, line: tuple[Vector, Vector], point: Vector, sign: float) -> tuple[Turn, tuple[Turn, Turn]]:
-        """Return the invariants of the middle joint for a point moved by another joint; see ``Side``."""
+        """Return the two invariants of a point that a joint moves; they do not change if the middle joint moves."""
         axis, at = line
         one, centre = self._measure
         arm = _minus(point, at)
@@ -119,7 +119,7 @@ class OnePose:
         return constants, factors
 
     def _middle(self, tip: Vector) -> tuple[Turn, Turn]:
-        """Return both solutions of the wrist's middle joint, as in ``Wrist``."""
+        """Return both solutions of the wrist's middle joint, as ``Wrist._middle`` does for many poses."""
         less, more = _minus(self._wrist[0], tip), _plus(self._wrist[0], tip)
         below = max(_dot(less, less) / 2 - self._gaps[0], 0.0)
         above = max(_dot(more, more) / 2 - self._gaps[1], 0.0)
@@ -184,7 +184,7 @@ def _moved_back(motion: Motion, v: Vector) -> Vector:
 
 
 def _rotated(axis: Vector, cosine: float, sine: float, v: Vector) -> Vector:
-    """Rotate a direction (O. Rodrigues' formula)."""
+    """Rotate ``v`` about a unit axis (O. Rodrigues' formula)."""
     x, y, z = v
     hx, hy, hz = axis
     along = (1 - cosine) * (hx * x + hy * y + hz * z)
@@ -214,7 +214,7 @@ def _between(axis: Vector, start: Vector, end: Vector) -> Turn:
 
 
 def _linear(a: float, b: float, d: float) -> tuple[Turn, Turn]:
-    """Solve a cos(q) + b sin(q) = d (``subproblems.solve_linear``)."""
+    """Solve a cos(q) + b sin(q) = d for the cosines and sines, as ``subproblems.solve_linear``."""
     length = sqrt(a * a + b * b)
     a, b, d = (a / length, b / length, d / length) if length >= TINY else (1.0, 0.0, 0.0)
     d = max(-1.0, min(1.0, d))

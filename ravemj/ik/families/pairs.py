@@ -167,7 +167,7 @@ class Pair:
         return solve_parabola(factors[0], factors[1], rest)
 
     def _both_sliding(self, factors: tuple[Floats, Floats], rest: Floats) -> tuple[Floats, Floats]:
-        """Solve for two prismatic joints: the first equation is linear, and eliminates one of both values."""
+        """Solve for two prismatic joints: the first equation is linear, and eliminates one of the two values."""
         slope, start = -factors[1][0, 0] / factors[0][0, 0], rest[0] / factors[0][0, 0]
         (a1, b1), (a3, b3) = factors[0][1], factors[1][1]
         linear, square = a3 + a1 * slope + 2 * b1 * start * slope, b3 + b1 * slope * slope
@@ -176,7 +176,7 @@ class Pair:
         return tile(start, other.shape[-2]) + slope * other, other
 
     def _slider_and_turn(self, slider: Floats, turn: Floats, rest: Floats) -> tuple[Floats, Floats]:
-        """Solve for a distance and a turn: eliminate the distance by the first equation, which is linear in it."""
+        """Solve for a prismatic and a revolute joint: the first equation, linear in the distance, eliminates it."""
         start, slope = rest[0] / slider[0, 0], -turn[0] / slider[0, 0]
         a, b = slider[1]
         k = a * start + b * start * start - rest[1]
@@ -187,7 +187,7 @@ class Pair:
         return (distance + tile(slope[1], turns.shape[-2]) * turns[1])[None], turns
 
     def _two_turns(self, one: Floats, three: Floats, rest: Floats) -> tuple[Floats, Floats]:
-        """Solve A x + C y = rest for unit vectors: |adj(A) (rest - C y)|² = det(A)²."""
+        """Solve A x + C y = rest for unit vectors; eliminating x leaves |adj(A) (rest - C y)|² = det(A)²."""
         adjugate = np.array([np.array([one[1, 1], -one[0, 1]]), np.array([-one[1, 0], one[0, 0]])])
         determinant = one[0, 0] * one[1, 1] - one[0, 1] * one[1, 0]
         scale = np.abs(one).max(axis=(0, 1))

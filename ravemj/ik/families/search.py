@@ -66,7 +66,7 @@ def _arm(nominal: Chain, locked: Sequence[int]) -> Arm:
 
 
 def _of(arm: Arm) -> Iterator[Family]:
-    """Yield the families that an arm of six joints belongs to."""
+    """Yield the solver families that an arm of six joints belongs to."""
     for ordered in _orders(arm):
         examples = _examples(ordered, np.zeros((3, 1, 1)))
         with contextlib.suppress(NoFamilyError):
@@ -91,7 +91,7 @@ def _block(arm: Arm, block: int, examples: tuple[Transform, Locked]) -> Iterator
 
 
 def _orders(arm: Arm) -> Iterator[Arm]:
-    """Yield equivalent joint orders; a prismatic and a revolute joint with parallel axes commute."""
+    """Yield the arm with equivalent orders of joints; a prismatic and a revolute one with parallel axes commute."""
     yield arm
     for toward_tool in (True, False):
         order = list(range(len(arm.screws)))
@@ -114,7 +114,7 @@ def _commute(arm: Arm, slider: int, other: int) -> bool:
 
 
 def _examples(arm: Arm, start: Floats) -> tuple[Transform, Locked]:
-    """Return motions of an arm in random configurations, and the values of its locked joints."""
+    """Return motions of an arm in random configurations, applied to ``start``, and the values of locked joints."""
     rng = np.random.default_rng(_SEED)
     seen: Transform | None = None
     locked: dict[int, Floats] = {}
@@ -130,7 +130,7 @@ def _examples(arm: Arm, start: Floats) -> tuple[Transform, Locked]:
 
 
 def _complete(arm: Arm, missing: int) -> Iterator[Arm]:
-    """Yield arms with ``missing`` joints added: at first all at the tool, then some of them completing a block."""
+    """Yield the arm with ``missing`` virtual joints: first all at the tool, then with some that complete a block."""
     if missing < 0:
         return
     if missing == 0:
@@ -144,7 +144,7 @@ def _complete(arm: Arm, missing: int) -> Iterator[Arm]:
 
 
 def _blocks_of(arm: Arm, added: int, more: int) -> Iterator[Arm]:
-    """Yield arms in which existing joints and ``added`` new ones form a block; ``more`` are appended at the tool."""
+    """Yield arms in which ``added`` virtual joints complete existing ones to a block; ``more`` follow at the tool."""
     size = 3 - added
     for place in range(len(arm.screws) - size + 1):
         around = range(place, place + size)
@@ -154,7 +154,7 @@ def _blocks_of(arm: Arm, added: int, more: int) -> Iterator[Arm]:
 
 
 def _third(screws: Sequence[Screw], added: int) -> Iterator[list[Screw]]:
-    """Yield sets of ``added`` joints that complete the given ones to a block of three."""
+    """Yield sets of ``added`` virtual joints that complete the given ones to a block: a wrist or planar joints."""
     turning = [screw for screw in screws if not screw.prismatic]
     if not turning:
         if not screws:
@@ -179,7 +179,7 @@ def _around(centre: Floats, axes: Floats) -> list[Screw]:
 
 
 def _behind(arm: Arm, count: int) -> Arm:
-    """Append joints with generic axes to an arm."""
+    """Append ``count`` virtual revolute joints with generic axes at the tool of an arm."""
     rng = np.random.default_rng(_SEED + count)
     axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     places = rng.normal(size=(3, 3)) / 2

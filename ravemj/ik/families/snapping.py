@@ -42,7 +42,7 @@ def _aligned(axes: Floats) -> Floats:
 
 
 def _joined(axes: Floats, points: Floats, prismatic: Bools) -> Floats:
-    """Move each revolute axis sideways to intersect the earlier axes that it nearly intersects."""
+    """Return points on the axes, moved so that each revolute axis intersects earlier axes that it nearly intersects."""
     points = points.copy()
     screws: list[Screw] = []
     for index, axis in enumerate(axes):
@@ -60,7 +60,7 @@ def _joined(axes: Floats, points: Floats, prismatic: Bools) -> Floats:
 
 
 def _nearest(first: Screw, other: Screw) -> Floats | None:
-    """Return the point on the axis of ``first`` nearest to that of ``other``; None if they are parallel and apart."""
+    """Return the point on the axis of ``first`` nearest to the axis of ``other``; None if the axes are parallel."""
     a, b, away = first.axis.ravel(), other.axis.ravel(), (other.point - first.point).ravel()
     square = 1 - (a @ b) ** 2
     if square < TOLERANCE**2:

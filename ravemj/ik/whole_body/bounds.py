@@ -47,7 +47,7 @@ class MotionLimits:
         return _within(lowest, highest, below, above)
 
     def _stopping(self, room: Floats, change: Floats, dt: float) -> Floats:
-        """Return the maximum displacement towards a limit that leaves a sufficient stopping distance.
+        """Return the largest displacement in a time step after which the joint can still stop before the limit.
 
         Args:
             room: Distance to the limit [rad or m].
@@ -66,6 +66,6 @@ class MotionLimits:
 
 
 def _within(lowest: Floats, highest: Floats, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
-    """Return the intersection of [lower, upper] with [lowest, highest]; if it is empty, the nearest end."""
+    """Return [lower, upper] clipped to [lowest, highest]; if they do not overlap, both bounds are the nearest end."""
     least = np.minimum(np.maximum(lower, lowest), highest)
     return least, np.maximum(np.minimum(np.maximum(upper, lowest), highest), least)  # beyond a limit, lower > upper

@@ -13,10 +13,10 @@ import numpy as np
 from ravemj.ik.vectors import Bools, Floats
 
 _SCALE = 1e6
-"""Norm to which the gradient is scaled; the solver stops if the norm over free variables is below 1e-8."""
+"""Norm to which the gradient is scaled before MuJoCo's QP solver, whose stopping threshold is absolute."""
 _SNAP = 1e-9
 _ACCURATE = 1e-9
-"""Relative gradient that counts as zero."""
+"""Gradient that counts as zero, relative to the initial one."""
 _REGULAR = 1e-12
 _ROUNDS = 60
 

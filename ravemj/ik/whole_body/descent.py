@@ -26,13 +26,13 @@ from ravemj.ik.whole_body.tasks import Inequality, TaskRows, WeightedTask
 EXACT = 1e-9
 """Remaining contact error after a step [m or rad]."""
 _NEAR = 1e-5
-"""Maximum contact error of a displacement that Newton steps correct."""
+"""Contact error of a displacement at which multiplier updates stop; Newton steps correct the rest."""
 _NEWTON = 1e-5
 """Contact error from which one Newton step leaves less than ``EXACT``."""
 _TURNS = 3
 """Maximum number of multiplier updates, and of Newton steps on contacts."""
 _EXACTLY = 1e-6
-"""Maximum error that a displacement leaves in contacts, as a fraction of the error before."""
+"""Fraction of a contact error up to which the error after a displacement counts as removed."""
 _DRIFT = 0.05
 """Contact error above which contacts are approached as tasks instead of enforced [m or rad]."""
 _LEAST_DAMPING, _MOST_DAMPING = 1e-6, 1e3
@@ -41,7 +41,7 @@ _BOUNCE = 1e-7
 _WINDOW, _LITTLE = 40, 1e-6
 """Convergence test: the number of steps, and the relative decrease of the cost over them."""
 _MINOR = 1e-3
-"""Relative decrease of the cost over these steps below which a descent out of steps counts as converged."""
+"""Relative decrease of the cost over ``_WINDOW`` steps below which a descent at its last step counts as converged."""
 _STILL = 1e-10
 """Displacement that counts as zero."""
 
@@ -92,11 +92,11 @@ class _State(NamedTuple):
     inequalities: Sequence[Inequality]
 
     def cost(self) -> float:
-        """Return the weighted sum of squared errors."""
+        """Return the weighted sum of the tasks' squared errors."""
         return _cost(self.measured)
 
     def costs(self) -> list[tuple[float, float]]:
-        """Return the cost and the sum of weights of each level: violated inequalities, then the priorities."""
+        """Return (cost, sum of weights) of each level: the violated inequalities, then the tasks by priority."""
         violations = float(sum(np.square(np.maximum(inequality.least, 0.0)).sum() for inequality in self.inequalities))
         numbers = sorted({task.priority for task, _ in self.measured})
         levels = [[task for task in self.measured if task[0].priority == number] for number in numbers]
@@ -163,7 +163,7 @@ class Descent:
         return DescentResult(steps, _cost(self._measured()), stopped)
 
     def _settle(self, state: _State, longest: float) -> None:
-        """Correct the drift of all levels but the last; strong damping keeps the last level from moving."""
+        """Correct the drift of all priorities but the lowest, whose effect is removed by strong damping."""
         for _ in range(_TURNS):
             saved = self._mechanism.saved()
             moved = self._advance(state, _MOST_DAMPING, self.limits.reachable(self._mechanism.values(), longest))
@@ -237,7 +237,7 @@ class Descent:
         return [TaskRows(error, jacobian) for jacobian, error in parts]
 
     def _on_contacts(self, x: Floats, lower: Floats, upper: Floats, most: float = _DRIFT) -> Floats:
-        """Correct contact errors of at most ``most`` after a displacement; return the total displacement."""
+        """Correct contact errors below ``most`` after the displacement ``x``; return the total displacement."""
         contacts = [task for task in self.tasks if task.is_contact and task.enabled]
         for _ in range(_TURNS if contacts else 0):
             measured = [(task, task.rows()) for task in contacts]
@@ -255,7 +255,7 @@ class Descent:
 
 
 def _on_equalities(problem: BoxProblem, gradient: Floats, x: Floats, jacobian: Floats, error: Floats) -> Floats:
-    """Return the minimizer with zero error in the equality rows, as far as the bounds allow."""
+    """Minimize a box QP subject to ``jacobian @ x = error``, as far as the bounds allow, by multiplier updates."""
     left = error - jacobian.dot(x)
     size = _length(left)
     for _ in range(_TURNS):
@@ -277,9 +277,9 @@ def _length(error: Floats) -> float:
 
 
 def _shortest(jacobian: Floats, error: Floats, lower: Floats, upper: Floats) -> Floats:
-    """Return a short displacement that removes an error; if none is found, the best displacement in the box.
+    """Return a short displacement that removes a contact error; if none is found, the one that reduces it most.
 
-    Variables that leave the box are fixed at their bounds, and the others remove the rest.
+    Variables that leave the box are fixed at their bounds, and the others remove the remaining error.
     """
     x = _least_norm(jacobian, error)
     free = np.ones(len(x), dtype=bool)
@@ -324,7 +324,7 @@ def _weighted(measured: Sequence[tuple[WeightedTask, TaskRows]], count: int) -> 
 
 @lru_cache(maxsize=64)
 def _factors(tasks: tuple[tuple[float, float, int], ...]) -> tuple[Floats, Floats]:
-    """Return the factors of the rows, shape (m, 1), and of the errors, (m,), for weight, gain and size of each task."""
+    """Return factors of Jacobian rows, (m, 1), and errors, (m,); a task is (weight, gain, number of rows)."""
     sizes = [size for _, _, size in tasks]
     roots = np.repeat([math.sqrt(weight) for weight, _, _ in tasks], sizes)
     return roots[:, None], roots * np.repeat([gain for _, gain, _ in tasks], sizes)

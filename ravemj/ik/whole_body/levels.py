@@ -16,7 +16,7 @@ from ravemj.ik.vectors import Floats
 from ravemj.ik.whole_body.tasks import Inequality, TaskRows
 
 _RANK = 1e-9
-"""Relative singular value below which a direction counts as part of the null space."""
+"""Singular value, relative to the largest, up to which a direction belongs to the null space."""
 _SOLVED = 1
 """Exit flag of daqp for an optimal solution."""
 _CAUTION = 1e-2
@@ -87,7 +87,7 @@ _Room = tuple[Floats, Floats, Floats]
 
 
 def _room(x: Floats, lower: Floats, upper: Floats, rows: Floats, least: Floats, basis: Floats) -> _Room:
-    """Return the constraints of coordinates z: a matrix and bounds of its product with z. z = 0 satisfies them."""
+    """Return a matrix and bounds of its product with z that keep ``x + basis @ z`` feasible; z = 0 satisfies them."""
     below = np.concatenate([np.minimum(lower - x, 0.0), np.minimum(least - rows @ x, 0.0)])
     above = np.concatenate([np.maximum(upper - x, 0.0), np.full(len(least), 1e30)])
     matrix = np.vstack([basis, rows @ basis])
@@ -96,7 +96,7 @@ def _room(x: Floats, lower: Floats, upper: Floats, rows: Floats, least: Floats, 
 
 
 def _coordinates(jacobian: Floats, error: Floats, damping: float, room: _Room) -> Floats:
-    """Minimize the cost of a level in its null-space coordinates; return zeros, which change nothing, if daqp fails."""
+    """Return the change z, in null-space coordinates, that minimizes a level's cost; zeros if daqp fails."""
     hessian = jacobian.T @ jacobian
     gradient = -(jacobian.T @ error)
     count = len(hessian)

@@ -11,7 +11,7 @@ from ravemj.ik.residuals import rotation_between
 from ravemj.ik.vectors import Floats
 
 _HALF_TURN = 1e-6
-"""Sine below which a rotation by pi is computed from the sum of the matrix and its transpose."""
+"""Sine below which a rotation by about pi is computed from the symmetric part of its matrix."""
 
 
 class TaskRows(NamedTuple):

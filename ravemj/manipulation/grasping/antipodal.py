@@ -139,7 +139,7 @@ def tool_poses(pair: Pair, jaws: Jaws, rolls: int = 8) -> list[Floats]:
 
 
 def _lines(inward: Floats, friction: float) -> Iterator[Floats]:
-    """Yield unit vectors, shape (n, 3): the inward normals, then some around each in its friction cone."""
+    """Yield lines into the object, unit vectors (n, 3): inward normals, then others in their friction cones."""
     yield inward.copy()
     side = np.eye(3)[np.abs(inward).argmin(axis=1)]
     side -= inward * (inward * side).sum(axis=1, keepdims=True)

@@ -33,10 +33,10 @@ _FINER = 16.0
 """Ratio of the fine step to the tolerance of contacts."""
 
 _PARALLEL = 1e-9
-"""Cosine of the angle between normal and approach below which a plane counts as never reached."""
+"""Cosine of the angle between a stop plane's normal and the approach below which the hand never reaches the plane."""
 
 _IS_PLANE = 0.5
-"""Minimum squared norm of the four numbers of a valid plane; OpenRAVE's."""
+"""Squared norm of the four numbers of a stop plane above which it is used; OpenRAVE's."""
 
 
 class Touches(Protocol):
@@ -259,7 +259,7 @@ def close(hand: Hand, target: Target | None, approach: Approach, touches: Touche
 
 
 class _ClosingSimulation:
-    """State of a simulated grasp: configuration of the robot, and its collision tests."""
+    """Simulation of one grasp: configuration of the hand, and its collision tests."""
 
     def __init__(self, hand: Hand, approach: Approach, touches: Touches, steps: Steps) -> None:
         self._hand, self._approach, self._touches, self._steps = hand, approach, touches, steps
@@ -305,7 +305,7 @@ class _ClosingSimulation:
         return None
 
     def _fly(self, target: Target) -> Reason | None:
-        """Place the hand outside of the target, fly to the contact, and retreat by the standoff.
+        """Start the hand outside the target, move it into contact, and retreat by the standoff.
 
         Returns:
             The reason of a failure, or None.
@@ -342,11 +342,11 @@ class _ClosingSimulation:
         return None
 
     def _stop(self, hit: float, hidden: float, T_target_tool: Floats) -> float:
-        """Return the distance that the hand flies [m], given by the plane or the standoff.
+        """Return the distance at which the approach stops [m], given by the stop plane, else by the standoff.
 
         Args:
             hit: Distance of the contact [m].
-            hidden: Distance from the contact to the target, if an obstacle is in between [m].
+            hidden: Distance from the contact to the target [m]; 0 if no obstacle is in between.
             T_target_tool: Pose of the tool at the start.
         """
         plane, along = self._approach.plane, _unit(self._approach.direction)

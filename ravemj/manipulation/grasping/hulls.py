@@ -139,7 +139,7 @@ def missing_direction(points: Floats) -> Floats:
 
 
 def _sorted(points: Floats) -> tuple[Floats, Ints]:
-    """Return the points in lexicographic order, and the order; the first of equally far points is then a vertex."""
+    """Return the points in lexicographic order, which decides between equally far points, and their former indices."""
     order = np.lexsort(points.T[::-1])
     return points[order], order
 
@@ -160,7 +160,7 @@ class _HullGrowth:
 
     @classmethod
     def start(cls, points: Floats) -> "_HullGrowth | None":
-        """Begin with a large simplex; None if the points are flat."""
+        """Start with a large simplex of the points; return None if the points are flat."""
         if len(points) <= points.shape[1]:
             return None
         tolerance = _TOLERANCE * max(float(np.abs(points).max()), np.finfo(float).tiny)
@@ -176,7 +176,7 @@ class _HullGrowth:
         return cls(points, np.array(simplex), tolerance)
 
     def add(self, index: int) -> None:
-        """Add a point: replace the facets that it sees by facets between the point and their border."""
+        """Add a point: replace the facets visible from it by facets between the point and their border."""
         if index in self._taken:
             raise _CycleError
         self._taken.add(index)
@@ -196,7 +196,7 @@ class _HullGrowth:
         self._final = np.concatenate([self._final[kept], np.zeros(len(facets), bool)])
 
     def complete(self) -> None:
-        """Add points until none is outside."""
+        """Add points until the hull contains all of them."""
         while len(pending := np.flatnonzero(~self._final)[:_CHUNK]):
             heights = self.points @ self.normals[pending].T - self.offsets[pending]
             highest = heights.max(axis=0)
@@ -226,7 +226,6 @@ class _HullGrowth:
         return normals, 1 / lengths + normals @ self.center
 
     def volume(self) -> float:
-        """Return the volume of the complete hull."""
         return float(np.abs(np.linalg.det(self.points[self.facets] - self.center)).sum()) / factorial(
             self.points.shape[1]
         )

@@ -13,10 +13,10 @@ MARGIN = 0.01
 """Distance of the grids from the sides of the target's bounding box [m]."""
 
 _FAR = 100.0
-"""Length of the rays from planes [m]."""
+"""Length of rays that start on a plane [m]."""
 
 _MOST_LINES = 1000
-"""Maximum number of grid lines on each axis of a side."""
+"""Maximum number of grid lines along each axis of a box side."""
 
 
 class Rays(NamedTuple):

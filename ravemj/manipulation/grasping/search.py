@@ -31,7 +31,7 @@ from ravemj.model.scene import Manipulator
 Method = Literal["fly", "antipodal"]
 
 _FREE = 1e-4
-"""Distance along the approach from the contact at which the open hand no longer touches the object [m]."""
+"""Distance before the grasp at which IK is tested, so that the open hand touches nothing [m]."""
 
 _BACK = 0.1
 """Length of the straight line by which jaws approach [m]."""
@@ -271,7 +271,7 @@ def _open(robot: BodyState, arm: Manipulator) -> None:
 
 
 class _Candidate(NamedTuple):
-    """Simulated candidate: pose of the robot, approach direction, result of closing, and reason of a failure."""
+    """Simulated grasp: base pose of the hand, approach direction, result of closing, and reason of a failure."""
 
     T_world_base: Floats
     approach: Floats
@@ -280,12 +280,10 @@ class _Candidate(NamedTuple):
 
 
 _Make = Callable[[HandTests], _Candidate]
-"""Function that simulates a candidate."""
+"""Function that simulates a candidate grasp."""
 
 
 class _CandidateSearch:
-    """Search for grasps by one robot of one object."""
-
     def __init__(self, robot: BodyState, arm: Manipulator, target: BodyState, choices: Choices) -> None:
         self._robot, self._arm, self._target, self._choices = robot, arm, target, choices
         sides = dict(zip(arm.gripper_dofs, arm.chucking_direction, strict=True))
@@ -305,7 +303,7 @@ class _CandidateSearch:
         self._center, self._radius = self._mass_center(T_target_links)
 
     def _mass_center(self, T_target_links: Floats) -> tuple[Floats, float]:
-        """Return the centre of mass in the object's frame, and the distance of the farthest point from it [m]."""
+        """Return the centre of mass in the object's frame, and its distance to the farthest bounding box corner [m]."""
         links = self._target.scene.links
         masses = np.array([link.inertial.mass for link in links])
         centers = np.array(
@@ -315,7 +313,7 @@ class _CandidateSearch:
         return center, float(np.linalg.norm(np.maximum(self._high - center, center - self._low)))
 
     def candidates(self) -> list[_Make]:
-        """Return functions that simulate the candidates.
+        """Return functions that simulate the candidate grasps.
 
         The target is temporarily moved to the origin, so that rounding errors do not depend on its pose.
         """
@@ -342,11 +340,11 @@ class _CandidateSearch:
         return rows[hit & ((rows[:, 3:] * rays[:, 3:]).sum(axis=1) < 0)]
 
     def _cast(self, rays: Floats) -> tuple[NDArray[np.bool_], Floats]:
-        """Return first hits of rays in the object's frame; the object is at the origin."""
+        """Return the first hits of rays with the object, which must be at the origin."""
         return self._robot.simulation.collisions().rays.first_hits(rays, self._geoms)
 
     def _flown(self, surface: Floats) -> Iterator[_Make]:
-        """Yield candidates that fly to each surface point, with each roll and standoff."""
+        """Yield candidates in which the hand flies to each surface point, with each roll and standoff."""
         tool_direction = np.array(self._arm.direction)
         for row in surface:
             for roll in 2 * np.pi * np.arange(self._choices.rolls) / self._choices.rolls:
@@ -359,7 +357,7 @@ class _CandidateSearch:
         return _Candidate(closed.T_world_base, approach.direction, closed, reason)
 
     def _jawed(self, surface: Floats) -> Iterator[_Make]:
-        """Yield candidates that place the jaws at each pair of opposite points."""
+        """Yield candidates in which the jaws close on each pair of opposite surface points."""
         jaws = jaws_of(self._robot, self._arm)
         for pair in antipodal.pairs(surface, self._cast, self._choices.friction, jaws.width - CLEARANCE):
             if pair.reason:
@@ -394,7 +392,7 @@ class _CandidateSearch:
         return None
 
     def _judged(self, candidate: _Candidate, tests: HandTests) -> Grasp:
-        """Return a candidate as a grasp, with contacts and quality, or with the reason for its rejection."""
+        """Evaluate a candidate: return its grasp with contacts and quality, or with the reason of rejection."""
         pose = inverse(self._T_world_target) @ candidate.T_world_base @ self._hand.T_base_tool
         preshape, closed = self._hand.values[self._gripper], candidate.closed
         values = self._hand.values if closed is None else closed.values

@@ -77,7 +77,7 @@ def timed_cubics(
 
 
 def _check_values(values: Floats, cubics: "_Cubics", limits: PathLimits) -> None:
-    """Check that the values between the knots are within the limits."""
+    """Raise a RetimingError if values leave their limits between the waypoints."""
     for extreme in cubics.extremes():
         beyond = values[:-1] + extreme
         for row, column in np.argwhere(limits.coordinates.outside(beyond, limits.lower, limits.upper)):
@@ -87,7 +87,7 @@ def _check_values(values: Floats, cubics: "_Cubics", limits: PathLimits) -> None
 
 
 class _Cubics:
-    """Cubic polynomials, given by displacements and end velocities, shape (m, n), and durations, shape (m, 1)."""
+    """Cubic segments of a path: displacements and end velocities, shape (m, n), and durations, shape (m, 1)."""
 
     def __init__(self, steps: Floats, starts: Floats, ends: Floats, times: Floats) -> None:
         self._starts, self._times = starts, times
@@ -98,19 +98,19 @@ class _Cubics:
         return np.abs(self._starts + (2 * self._square + 3 * self._cube * time) * time)
 
     def greatest_speeds(self) -> Floats:
-        """Return the maximum speed of each value, shape (n,)."""
+        """Return the maximum speed of each value over all segments, shape (n,)."""
         with np.errstate(divide="ignore", invalid="ignore"):
             turn = -self._square / (3 * self._cube)
         turn = np.where((turn > 0) & (turn < self._times), turn, 0.0)
         return np.max([self._speed(time).max(axis=0) for time in (0 * turn, turn, 0 * turn + self._times)], axis=0)
 
     def greatest_accelerations(self) -> Floats:
-        """Return the maximum acceleration of each value, shape (n,); it is at an end of a polynomial."""
+        """Return the maximum acceleration of each value, shape (n,); it is reached at an end of a segment."""
         first, last = 2 * self._square, 2 * self._square + 6 * self._cube * self._times
         return np.maximum(np.abs(first).max(axis=0), np.abs(last).max(axis=0))
 
     def extremes(self) -> Iterator[Floats]:
-        """Yield the displacements at which each value reverses, shape (m, n)."""
+        """Yield displacements, shape (m, n), at which values change direction inside segments; 0 if they do not."""
         with np.errstate(divide="ignore", invalid="ignore"):
             root = np.sqrt(self._square**2 - 3 * self._cube * self._starts)
             for top in (-self._square + root, -self._square - root):

@@ -10,7 +10,6 @@ from ravemj.planning.ramps import Ramps, fit_from_rest, fit_matched_ramps, fit_r
 from ravemj.planning.retiming.segments import LONGER, MOST_ATTEMPTS, PathLimits, Segment, SegmentRows
 
 _SLACK = 1e-12
-"""Relative rounding tolerance."""
 
 
 class Polynomial:
@@ -21,11 +20,11 @@ class Polynomial:
     merges: bool
 
     def _first_time(self, way: Floats, limits: PathLimits) -> float:
-        """Return the first duration to try [s], by default the minimum from rest to rest; ``way``: displacements."""
+        """Return the first duration of a segment to try [s], by default the minimum from rest to rest."""
         return self._from_rest_to_rest(way, limits)
 
     def _from_rest_to_rest(self, way: Floats, limits: PathLimits) -> float:
-        """Return the minimum time from rest to rest [s]."""
+        """Return the minimum duration [s] of a segment that starts and ends at rest, for the displacements ``way``."""
         raise NotImplementedError
 
     def shortest(self, segment: Segment, limits: PathLimits) -> float:
@@ -166,7 +165,7 @@ class Linear:
 
 
 def _of_base(step: Floats, limits: PathLimits) -> tuple[Floats, Floats]:
-    """Return distances and maximum speeds, with a single value each for translation and rotation of a base."""
+    """Return distances and maximum speeds of a step; a base has one translation distance and one rotation angle."""
     parts = limits.coordinates
     translation, rotation = list(parts.translation), list(parts.rotation)
     rest = [column for column in range(len(step)) if column not in parts.translation + parts.rotation]
@@ -257,7 +256,7 @@ class MatchedRamps(Parabolic):
 
 
 _SIGNS = (1.0, 0.0, -1.0, 0.0, -1.0, 0.0, 1.0)
-"""Signs of the jerk in the pieces of a motion."""
+"""Sign of the jerk in each of the seven pieces of a double-S profile."""
 
 
 class JerkLimited:
@@ -310,11 +309,10 @@ def _joints(step: Floats, limits: PathLimits) -> list[tuple[float, float, float,
 
 
 def _double_s(way: float, speed: float, acceleration: float, jerk: float) -> tuple[float, float, float, float]:
-    """Return the times of the fastest motion over a distance from rest to rest.
+    """Return the durations [s] of the fastest double-S profile over the distance ``way``, from rest to rest.
 
     Returns:
-        Durations [s] of constant jerk, of the whole acceleration, of the motion before the deceleration, and of the
-        whole motion.
+        Durations of the first jerk, of the whole acceleration, of the time before the deceleration, and of the motion.
     """
     if not (speed > 0 and acceleration > 0 and jerk > 0):
         return 0.0, 0.0, 0.0, np.inf
@@ -332,7 +330,7 @@ def _double_s(way: float, speed: float, acceleration: float, jerk: float) -> tup
 
 
 def _changes(profile: tuple[float, float, float, float], duration: float) -> Floats:
-    """Return the times of jerk changes if the motion is stretched to another duration [s]."""
+    """Return the times of jerk changes of a double-S profile [s], stretched to ``duration``."""
     flank, ramp, slows, whole = profile
     changes = np.array([0.0, flank, ramp - flank, ramp, slows, slows + flank, slows + ramp - flank])
     return changes * (duration / whole)

@@ -123,7 +123,6 @@ class Profile(Interpolated, Protocol):
 
 
 _QUATERNION = 4
-"""Number of columns of a quaternion."""
 
 
 class Timed(NamedTuple):
@@ -191,7 +190,7 @@ def retime(
 
 
 def _duration(needed: float, given: float | None, time_step: float) -> float:
-    """Return the duration of a segment [s] from the minimum and the given one."""
+    """Return the duration of a segment [s]: the given one, or the minimum rounded up to whole time steps."""
     if not needed < _LONGEST:
         raise RetimingError("a joint moves whose velocity or acceleration limit is 0, or nearly so")
     if given is not None:
@@ -204,7 +203,7 @@ def _duration(needed: float, given: float | None, time_step: float) -> float:
 
 
 def _driven(profile: Profile, segment: Segment, limits: PathLimits, duration: float, attempts: int) -> SegmentRows:
-    """Return the rows of a segment; only from rest to rest, up to ``attempts`` longer durations are tried."""
+    """Return the rows of a segment. If it is from rest to rest, up to ``attempts`` longer durations are tried."""
     if duration < _SHORTEST and profile.merges:
         return SegmentRows(np.zeros(1), ())
     for _ in range(attempts if segment.is_from_rest_to_rest else 1):
@@ -227,11 +226,11 @@ class _TimedRows:
         self._is_point = [np.ones(1, dtype=bool)]
 
     def start_at(self, time: float) -> None:
-        """Start the path at a time [s] after 0."""
+        """Set the time of the first waypoint [s]."""
         self._deltas[0][0] = time
 
     def append(self, rows: SegmentRows, start: Floats, end: Floats) -> None:
-        """Append a segment; its last row is the waypoint ``end``."""
+        """Append a segment; its last row is replaced by the exact waypoint ``end``."""
         times = rows.times
         if self._profile.merges and times[-1] <= 0:
             return

@@ -83,7 +83,6 @@ class Contents(EnvironmentPart):
             return wrapped
 
     def _remove_all(self) -> None:
-        """Remove all bodies and sensors from the environment."""
         for body in self._kept_objects.values():
             if isinstance(body, Robot):
                 body.devices.forget()
@@ -547,7 +546,7 @@ class Contents(EnvironmentPart):
 
 
 def _renames(mode: Any) -> bool:  # noqa: ANN401 - a number or an enumeration
-    """Return whether ``addMode`` allows renaming: True, or a mode without strict checking of names."""
+    """Return whether the argument ``addMode`` of ``Add`` allows renaming a body with a taken name."""
     if mode is None or isinstance(mode, bool):
         return bool(mode)
     if mode not in tuple(InterfaceAddMode):

@@ -486,7 +486,7 @@ class Description(Contents):
         return self._clock
 
     def _advance(self, timestep: float) -> None:
-        """Run one simulation step. The clock holds the lock.
+        """Run one simulation step of all objects. The clock calls it and holds the lock.
 
         Sensors come last, so that they measure the state at the end of the step.
         """

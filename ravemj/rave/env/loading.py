@@ -274,7 +274,7 @@ class Loading(Description):
     def _hold(
         self, holder: BodyState, grabs: Sequence[Grab], added: Mapping[str, BodyState], diagnostics: Diagnostics
     ) -> None:
-        """Grab the bodies that the file declares as grabbed."""
+        """Make a body grab the bodies that its file declares as grabbed; warn of unknown ones."""
         for grab in grabs:
             held = added.get(grab.body)
             if held is None or held is holder:
@@ -360,7 +360,7 @@ class Loading(Description):
         return body
 
     def _read(self, reading: "Reading", into: KinBody | None, *, is_robot: bool) -> KinBody | None:
-        """Return the first body of a parsed file, without adding it."""
+        """Return the first body of a parsed file without adding it; log an error and return None if there is none."""
         self._note(reading)
         send_warnings(reading.diagnostics)
         failure = reading.failure

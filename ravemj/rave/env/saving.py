@@ -170,7 +170,7 @@ SaveArguments = str | Mapping[str, str] | Sequence[tuple[str, str]]
 """Argument ``atts`` of ``Save``: the name of a body, or strings by name; in pairs a name may be repeated."""
 
 _WITH_SENSORS = (SelectionOptions.Everything, SelectionOptions.AllExceptBody)
-"""Selections that include sensors without a robot."""
+"""Selections of objects to save that include sensors without a robot."""
 
 _NO_MASS = Inertial(1e-10, ZERO, ((1e-7, 0.0, 0.0), (0.0, 1e-7, 0.0), (0.0, 0.0, 1e-7)))  # as without <rigid_body>
 
@@ -192,7 +192,7 @@ _NO_EFFECT = {
     "ignoreexternaluri": "a body stands in the file itself where 'externalref' does not name it",
     "reusesimilar": "each body is written by itself",
 }
-"""OpenRAVE's options that do not change what ``Load`` reads back, with the reason given in a warning."""
+"""Save options of OpenRAVE that do not change what ``Load`` reads back, and the reasons given in warnings."""
 
 _IN_MEMORY = ("collada", "json")
 _VALUES = {
@@ -320,7 +320,7 @@ class Saving(Description):
 
 
 def _checked(atts: SaveArguments | None, diagnostics: Diagnostics) -> list[tuple[str, str]]:
-    """Return the arguments as pairs of strings."""
+    """Return the save options as pairs of name and value; a string is the option ``target``."""
     if isinstance(atts, str):
         return [("target", atts)]
     pairs = list((atts.items() if isinstance(atts, Mapping) else atts) or ())
@@ -344,7 +344,7 @@ def _check_words(name: str, value: str) -> None:
 
 
 def _external_names(given: Sequence[tuple[str, str]], names: Collection[str]) -> set[str]:
-    """Return the body names in the option ``externalref``."""
+    """Return the names of the bodies to save as references, from the option ``externalref``; ``*`` means all."""
     asked = {word for name, value in given if name == "externalref" for word in value.split()}
     missing = sorted(asked - {"*", *names})
     if missing:

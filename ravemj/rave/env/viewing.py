@@ -431,7 +431,6 @@ class Viewing(EnvironmentPart):
         return self._renderer
 
     def _repr_png_(self) -> bytes:
-        """Return the picture that notebooks show for an environment."""
         from ravemj.graphics.video import picture_bytes  # noqa: PLC0415 - only notebooks want it
 
         return picture_bytes(self.render(480, 360))

@@ -209,17 +209,16 @@ class _Called:
             self._called[key].discard(place)
 
     def first(self, item: Json) -> Described | None:
-        """Return the first info with the id or the name of an item."""
+        """Return the first info with the id or name of a JSON object; None if there is none."""
         places = [place for key in _calls("", item) for place in self._called.get(key, ())]
         return self._at[min(places)] if places else None
 
     def listed(self) -> list[Described]:
-        """Return the infos in their order."""
         return [info for _, info in sorted(self._at.items(), key=lambda item: item[0])]
 
 
 def _calls(prefix: str, fields: Mapping[str, object]) -> Iterator[tuple[str, object]]:
-    """Yield the fields ``id`` and ``name``, whose keys have a prefix, unless they are empty."""
+    """Yield name and value of the fields ``id`` and ``name``, whose keys have a prefix, unless a value is empty."""
     for name in ("id", "name"):
         value = fields.get(prefix + name)
         if value and isinstance(value, str):
@@ -313,7 +312,7 @@ class Info(ApiObject):
     _called: ClassVar[str]
     """Name of the class for ``repr`` and error messages; by default ``__name__``."""
     _entries: ClassVar[tuple[Entry, ...]]
-    """JSON keys, made from the fields."""
+    """Conversions of all fields to JSON keys."""
     _internal: ClassVar[tuple[str, ...]] = (
         *("of", "geometry", "draw", "link", "adjacent", "joint", "motor", "manipulator", "sensor", "camera"),
         *("named_values", "transform", "values_by_axis", "same_structure", "parameters", "with_parameters"),
@@ -372,7 +371,7 @@ class Info(ApiObject):
                 raise ArgumentError(f"{self._called}.DeserializeJSON: {key}: {error}") from None
 
     def _json(self, obj: Json | None = None) -> Sequence[Entry]:
-        """Return the table of the JSON keys; ``obj`` is the JSON to be read, or None for writing."""
+        """Return the conversions of fields to JSON keys; ``obj`` is the JSON to be read, or None for writing."""
         del obj
         return self._entries
 
@@ -447,7 +446,7 @@ _ROUNDING = 1e-14
 
 
 def _same(first: Any, second: Any) -> bool:  # noqa: ANN401 - whatever users put into fields
-    """Return whether two values are equal; arrays and lists are compared element by element."""
+    """Return whether two values are equal, with a tolerance for arrays; lists are compared by element."""
     if isinstance(first, TriMesh) and isinstance(second, TriMesh):
         return _same(first.toDict(), second.toDict())
     if isinstance(first, Mapping) and isinstance(second, Mapping):

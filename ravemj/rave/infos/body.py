@@ -328,7 +328,7 @@ class KinBodyInfo(IdentifiedInfo):
         return _alike(self._standing().SerializeJSON(), other._standing().SerializeJSON())
 
     def _standing(self) -> "KinBodyInfo":
-        """Return a copy of the info without poses, joint values and grabbed bodies."""
+        """Return a copy of the info with identity poses, and without joint values and grabbed bodies."""
         links = [replace(link, _t=np.eye(4)) for link in self._vLinkInfos]
         joints = [replace(joint, _vcurrentvalues=None) for joint in self._vJointInfos]
         return replace(
@@ -425,7 +425,7 @@ def _checked(infos: Sequence[T], kind: type[T]) -> Sequence[T]:
 def _asked(
     builder: "BodyBuilder", values: dict[tuple[str, int], float], diagnostics: Diagnostics
 ) -> list[float] | None:
-    """Return the value of each DOF, or None if the info has no values."""
+    """Return the value of each DOF from an info; None if it has no values. Warn of unknown joints."""
     active = [joint for joint in builder.joints if joint.active]
     known = {(joint.name, index) for joint in builder.joints for index in range(len(joint.axes))}
     for name, index in values.keys() - known:
@@ -526,7 +526,7 @@ def _renamed(joint: JointInfo, own: Rename) -> JointInfo:
 
 
 def _weld(body: ConnectedBodyInfo, carrier: str, root: str) -> JointInfo:
-    """Return the fixed joint between a body and the robot, under OpenRAVE's name for it."""
+    """Return the fixed joint between a robot's link and a connected body, under OpenRAVE's name for it."""
     return JointInfo(
         _name=f"{body._name}___dummyconnectedbody__",
         _type=JointType.Prismatic,

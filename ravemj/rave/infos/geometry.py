@@ -249,7 +249,7 @@ _SLICES = Form(
 
 
 def _of_sizes(shape: type[scene.Shape]) -> Iterator[Entry]:
-    """Yield the JSON keys of a shape, named like its sizes; see ``GeometryInfo`` for their fields."""
+    """Yield the JSON keys of a shape's sizes; see ``GeometryInfo`` for the fields that store them."""
     vectors, places = iter(VECTORS), itertools.count()
     for name, kind, optional in shape.sizes():
         first, *others = name.split("_")
@@ -281,7 +281,7 @@ _SIZES_JSON = {
         Entry("sideWalls", "_vSideWalls", _WALLS, optional=True),
     ),
 }
-"""JSON keys of the sizes of each type. The last three types have no shape in the scene; only infos know them."""
+"""JSON keys of the sizes by geometry type. The last three types exist only in infos, not in scenes."""
 
 
 def _mesh_json(mesh: TriMesh, scale: float) -> Json:
@@ -420,7 +420,7 @@ class GeometryInfo(GeometrySizes):
         )
 
     def _shape(self) -> scene.Shape:
-        """Return the shape with the sizes of the fields, in the order of ``_take``."""
+        """Return the shape described by the size fields, which ``_take`` fills."""
         kind = _SHAPES.get(GeometryType(self._type))
         if kind is None:
             message = f"GeometryInfo: a shape of type {GeometryType(self._type).name} cannot be made here"
@@ -447,7 +447,7 @@ class GeometryInfo(GeometrySizes):
         return numbers[:count].tolist()
 
     def _mesh(self) -> scene.Mesh:
-        """Return the triangles of ``_meshcollision``, else those of the mesh files."""
+        """Return the mesh ``_meshcollision``, or that of the collision or render file if it is None."""
         if self._meshcollision is not None:
             return checked_mesh(self._meshcollision, "GeometryInfo._meshcollision")
         collision = _file(self._filenamecollision, self._vCollisionScale)
@@ -473,7 +473,7 @@ class GeometryInfo(GeometrySizes):
         self._filenamerender, self._drawn = filename or None, (None, None)
 
     def _display(self) -> tuple[scene.Surface, ...] | None:
-        """Return the surfaces that are drawn instead of the shape; None draws the shape itself.
+        """Return the surfaces drawn instead of the shape; None if the shape itself is drawn.
 
         They are those of the geometry that this info was made from, unless another file has been set.
         """

@@ -176,11 +176,11 @@ _MIMICS = Form(
     lambda items, scale, present: [[*item["equations"], "", ""][:3] for item in items],
 )
 _VALUES = Form(PLAIN.write, PLAIN.read)
-"""Conversion of joint values and their derivatives: plain numbers, or lengths if the joint is prismatic."""
+"""JSON conversion of joint values and their derivatives; those of prismatic joints are lengths."""
 
 
 def _of_axes(key: str, of: str, default: float, form: Form = PLAIN) -> ArrayLike:
-    """Declare a field with one number for each axis; ``of`` is its name in ``scene.Axis``."""
+    """Declare an info field with one number per axis; ``of`` is the attribute of ``scene.Axis``."""
     return json_field(key, form, default=np.full(3, default), of=of)
 
 
@@ -385,7 +385,7 @@ class JointInfo(ParameterFields):
         return tuple(axes)
 
     def _per_axis(self, field: str, count: int) -> list[float]:
-        """Return one number for each axis; missing ones have the default of new infos.
+        """Return a field's numbers for ``count`` axes; missing ones have the default of new infos.
 
         Raises:
             ArgumentError: a number is NaN.
@@ -408,7 +408,7 @@ _DEFAULTS = {
 
 
 _REPORTED = {"max_torque": "own_torque"}
-"""Axis fields that infos read under another name: torque limits without the motor, which has its own info."""
+"""Axis properties that infos read from another attribute: torque limits exclude the motor, which has its own info."""
 
 
 def _motor_of(axis: scene.Axis, *, is_slider: bool) -> ElectricMotorActuatorInfo | None:
@@ -440,7 +440,7 @@ def _unit(direction: Vec3) -> Vec3:
 
 
 def _directions(body: scene.KinBody, joint: scene.Joint, values: Sequence[float]) -> list[Vec3]:
-    """Return the directions of the axes at joint values, in the frame of the first link."""
+    """Return the directions of a joint's axes at joint values, in the frame of its first link."""
     if joint.static and body.joints:  # the builder turns the axes of a weld into the frame of its second link
         return [rotate(conjugate(joint.T_parent_child.wxyz), axis.direction) for axis in joint.axes]
     return directions_at(joint, values)

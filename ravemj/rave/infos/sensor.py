@@ -280,7 +280,7 @@ _OTHER_NAMES = {
     "time_measurement": "scan_time",
     "time_scan": "scan_time",
 }
-"""Fields of infos with another name in devices; fields without a counterpart are only stored."""
+"""Info fields with another name in devices. Devices lack some other fields, which infos only store."""
 
 
 def geometry_of(device: scene.Device) -> SensorGeometry:
@@ -334,7 +334,7 @@ def _described(device: scene.Device) -> type[SensorGeometry]:
 
 
 def _shared(geometry: SensorGeometry, device: scene.Device) -> Iterator[tuple[str, str, Any]]:
-    """Yield the names in the info and in the device of each common property, and its type in the device."""
+    """Yield the names, in info and device, of each property that both have, and its type in the device."""
     types = {field.name: field.type for field in fields(device)}
     for field in fields(geometry):
         name = _OTHER_NAMES.get(field.name, field.name)
@@ -343,7 +343,7 @@ def _shared(geometry: SensorGeometry, device: scene.Device) -> Iterator[tuple[st
 
 
 def _is_angle(field: str, kind: Any) -> bool:  # noqa: ANN401 - a type
-    """Return whether a field has angles about two axes, of which the device has only the first."""
+    """Return whether an info field has angles about two axes; devices have only the first."""
     return kind is float and field in {"min_angle", "max_angle", "resolution"}
 
 
@@ -386,4 +386,4 @@ _READERS: Mapping[Any, Callable[[Any, str], Any]] = {
     Vec3: vector,
     tuple[float, ...]: _numbers,
 }
-"""Conversions of fields by their type in devices."""
+"""Conversions of info fields to device values, by type."""

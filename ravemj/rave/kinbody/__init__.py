@@ -385,7 +385,6 @@ class KinBody(BodyConfiguration, Interface):
         return f"{self._env!r}.Get{'Robot' if self.IsRobot() else 'KinBody'}({self.GetName()!r})"
 
     def _repr_html_(self) -> str:
-        """Return the tables that notebooks show for a body."""
         from ravemj.rave.tables import body_table  # noqa: PLC0415 - html is slow to import
 
         return body_table(self)
@@ -677,7 +676,7 @@ class KinBody(BodyConfiguration, Interface):
         return self.ComputeAABBForGeometryGroupFromTransform(geomgroupname, np.eye(4), enabledOnlyLinks)
 
     def _poses(self, T_world_body: Floats | None = None) -> Floats:
-        """Return the link poses for the current or a given pose of the first link, shape (links, 4, 4)."""
+        """Return the link poses, shape (links, 4, 4); ``T_world_body`` replaces the present pose of the first link."""
         with self._simulation.lock:
             poses = self._state.link_transforms()
         return poses if T_world_body is None or not len(poses) else T_world_body @ inverse(poses[0]) @ poses
@@ -689,7 +688,7 @@ class KinBody(BodyConfiguration, Interface):
 
 
 class _SavedBody(Block["KinBody"]):
-    """Context manager behind ``with body:``."""
+    """Context manager for ``with body:``, which restores the body's state."""
 
     def __init__(self, body: KinBody) -> None:
         super().__init__(self._run(body))

@@ -112,7 +112,7 @@ class StateSaver(ApiObject):
 
 
 def _hold(state: BodyState, grabs: Sequence[GrabbedBody], *, moves_held: bool) -> None:
-    """Restore grabs; ``moves_held`` restores the relative poses of grabbed bodies, too."""
+    """Restore grabs and, if ``moves_held``, the poses of grabbed bodies relative to their links."""
     state.grabs = still_possible(state, grabs)
     if moves_held:
         state.carry()

@@ -53,7 +53,7 @@ class BodyPart(ApiObject):
     _simulation: Simulation
 
     _known: tuple[tuple[scene.Joint, ...], dict[str, Floats]] | None = None
-    """Cache: the joints for which it was computed, and fields of their axes as arrays, by name.
+    """Cached arrays of axis fields by name, and the tuple of joints for which they were computed.
 
     Every change of joints creates a new tuple, so the cache is valid if the scene still has this tuple.
     """
@@ -237,7 +237,7 @@ class BodyPart(ApiObject):
     def _set_axes(
         self, caller: str, fields: dict[str, ArrayLike], indices: "ArrayLike | None" = None, *, positive: bool = False
     ) -> None:
-        """Set fields of axes. If one number is invalid, none is set."""
+        """Set fields of the axes of DOFs, by default of all. On an error, none is changed."""
         dof = self.GetDOF()
         chosen = checked_indices(... if indices is None else indices, dof)
         given: dict[str, list[float]] = {}
@@ -283,7 +283,7 @@ class BodyPart(ApiObject):
     _places: tuple[object, dict[str, int]] = (None, {})
 
     _uri: str | None = None
-    """File or ``uri`` given to ``InitFrom…``; None means the file from which the body was read."""
+    """File or ``uri`` given to ``InitFrom…``; None if the body was read from its scene's source file."""
 
     _id = ""
 
@@ -807,7 +807,7 @@ _NO_FILES = frozenset({FROM_SCRIPT.file, "data"})
 
 
 def _rows(numbers: ArrayLike, widths: tuple[int, ...], name: str) -> Floats:
-    """Return rows of numbers, checked to be finite."""
+    """Return numbers as rows of one of the given widths; raise an error if a shape or number is invalid."""
     rows = checked_numbers(numbers, name)
     wanted = " or ".join(f"(n, {width})" for width in widths)
     if rows.ndim != 2:

@@ -36,7 +36,7 @@ Target = ArrayLike | IkParameterization | CollisionReport | None
 
 
 def _sorted_out(transform: Target, report: CollisionReport | None) -> tuple[Floats | None, CollisionReport | None]:
-    """Return the tool pose and the report; the pose is None if the report was passed in its place."""
+    """Return tool pose and report, either of which may be the first argument; the pose is None if not given."""
     if isinstance(transform, IkParameterization):
         return transform.GetTransform6D(), report
     if transform is None or isinstance(transform, CollisionReport):
@@ -365,7 +365,7 @@ class Manipulator(ArmIk):
         report: CollisionReport | None,
         T_world_tool: Floats | None,
     ) -> bool:
-        """Test the geom pairs that ``find`` selects, with the tool at a goal or at its present pose."""
+        """Test the geom pairs that ``find`` selects, with the tool at ``T_world_tool``; None is its present pose."""
         checker = self._robot.GetEnv().GetCollisionChecker()
         with self._state.simulation.lock:
             world = checker.world()

@@ -328,7 +328,7 @@ class ArmIk(ApiObject):
             return self._solver("search").search(self._in_base(param), None, options)
 
     def _in_base(self, param: ArrayLike | IkParameterization) -> IkParameterization | Floats:
-        """Return a goal in the frame of the arm's base; an array is a pose (4, 4)."""
+        """Transform a goal, given in the world, to the frame of the arm's base; an array is a pose (4, 4)."""
         T_base_world = inverse(self._T_world_base())
         if isinstance(param, IkParameterization):
             return param.Transform(T_base_world)
@@ -553,7 +553,7 @@ class ArmIk(ApiObject):
         return self._robot.GetDOFValues(self._scene.arm_dofs)
 
     def _goal_now(self, iktype: IkParameterizationType) -> Floats:
-        """Return the present tool pose in the arm's base frame, as input of a solver."""
+        """Return the present tool pose as a solver's input: goal values in the arm's base frame."""
         if iktype == _Type.Transform6D:
             return inverse(self._T_world_base()) @ self.GetTransform()
         return np.asarray(self.GetIkParameterization(iktype, inworld=False).GetValues())

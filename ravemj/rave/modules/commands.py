@@ -452,14 +452,14 @@ _TOOL_GOAL: Mapping[str, Callable[[Tokens], IkParameterization]] = {
 """Readers of options with one tool goal."""
 
 _TOOL_GOALS = {"matrices": "matrix", "poses": "pose", "ikparams": "ikparam"}
-"""For each option with several tool goals: the option with a single goal, whose reader is repeated."""
+"""Options that give several tool goals, and the option for one goal whose reader they repeat."""
 
 _CONSTRAINT: Mapping[str, Reader] = {
     **dict.fromkeys(("constraintmatrix", "constrainttaskmatrix"), Tokens.matrix),
     **dict.fromkeys(("constraintpose", "constrainttaskpose"), _pose),
     **{"constraintfreedoms": lambda tokens: tokens.numbers(6), "constrainterrorthresh": Tokens.number},
 }
-"""Arguments of a tool constraint."""
+"""Readers of the options of a tool constraint."""
 
 GRASP_COLUMNS = (
     *("igrasptrans", "grasptrans_nocol", "igraspdir", "imanipulatordirection", "igrasppreshape"),

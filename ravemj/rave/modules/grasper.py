@@ -31,7 +31,6 @@ from ravemj.rave.robot import Robot
 from ravemj.rave.trajectory import Trajectory
 
 _RANDOM = np.random.default_rng()
-"""Source of noise."""
 
 _MOST = 16
 """Maximum number of contacts in the first, fast test of force closure; OpenRAVE's value."""
@@ -226,7 +225,7 @@ class GraspSimulation(Manipulation):
         return answer if not sweep.checkik or self._is_reachable(answer, manip) else None
 
     def _is_robust(self, answers: Sequence[GraspAnswer], noise: float) -> bool:
-        """Return whether grasps with noise end close enough to one another; OpenRAVE's rule."""
+        """Return whether grasps repeated with noise end close to one another, by OpenRAVE's rule."""
         if not answers:
             return True
         values = np.array([answer.end.values for answer in answers])
@@ -280,7 +279,7 @@ class GraspSimulation(Manipulation):
         return manip
 
     def _sides(self, chuckingdirection: Sequence[float] | None) -> Mapping[int, float]:
-        """Return the sign of the motion of each active joint; 0 for joints that are not in the gripper."""
+        """Return the sign of each active joint's closing motion; 0 for joints outside the gripper."""
         manip = self._manipulator()
         gripper = manip.GetGripperIndices().tolist()
         signs = manip.GetChuckingDirection().tolist() if chuckingdirection is None else list(chuckingdirection)
@@ -292,7 +291,7 @@ class GraspSimulation(Manipulation):
         return {int(dof): float(known.get(int(dof), 0.0)) for dof in self.robot.GetActiveDOFIndices()}
 
     def _closing(self) -> Floats:
-        """Return the velocities of all DOFs when all grippers close, shape (dof,)."""
+        """Return the velocities of all DOFs when all grippers close, shape (dof,); their magnitude is 1."""
         speeds = np.zeros(self.robot.GetDOF())
         for manip in self.robot.GetManipulators():
             speeds[manip.GetGripperIndices()] = manip.GetChuckingDirection()

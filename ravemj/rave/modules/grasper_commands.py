@@ -31,7 +31,7 @@ _PARAMETERS: Mapping[str, Reader] = {
 
 
 def _optional_flag(tokens: Tokens) -> bool:
-    """Return whether an option is on: its value is 1, or it has no value (0 or 1)."""
+    """Return whether an option is on: followed by 1, or by no flag at all."""
     return flag(tokens) if tokens and tokens.words[0] in {"0", "1"} else True
 
 

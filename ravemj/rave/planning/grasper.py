@@ -29,7 +29,7 @@ _VECTORS = {
     "vmanipulatordirection": ("manipulatordirection", 3),
     "vintersectplane": ("vintersectplane", 4),
 }
-"""XML tags of vector parameters: the field of ``GraspParameters``, and the length of the vector."""
+"""Field of ``GraspParameters`` and vector length, by XML tag."""
 
 _NUMBERS = {
     "ftargetroll": "roll",
@@ -44,7 +44,7 @@ _SWITCHES = {
     "bonlycontacttarget": ("onlycontacttarget", True),
     "bavoidcontact": ("avoidcontact", False),
 }
-"""XML tags of boolean parameters: the field of ``GraspParameters``, and the planner's default."""
+"""Boolean field of ``GraspParameters`` and the planner's default, by XML tag."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -169,10 +169,10 @@ def _direction(vector: Floats, name: str) -> Floats:
 
 
 def _ordered(sides: Mapping[int, float], order: Sequence[int] | None) -> dict[int, float]:
-    """Return the fingers in the order of closing.
+    """Return the closing directions of finger joints in the given order of closing.
 
     Raises:
-        ArgumentError: the order does not name just the joints that close.
+        ArgumentError: the order does not name exactly the joints that close.
     """
     if order is None or not len(order):
         return dict(sides)
@@ -246,10 +246,10 @@ class Grasper(Planner):
         return self._solved(f"the hand has {len(grasped.contacts)} contacts with the target")
 
     def _problem(self, values: Values) -> tuple[Robot, list[int], list[int]]:
-        """Return the robot, the DOF indices of the joints that may close, and their columns.
+        """Return the robot, the DOF indices of the joints that may close, and their configuration columns.
 
         Raises:
-            ArgumentError: something else than one robot moves.
+            ArgumentError: the moving bodies are not one robot.
         """
         bodies = values.bodies
         robot = self._env.wrap(bodies.bodies[0]) if bodies is not None and len(bodies.bodies) == 1 else None

@@ -28,7 +28,7 @@ _MOST_GOALS = 100_000
 """Maximum number of goals of a hand trajectory. At half a millisecond each, these take a minute."""
 
 _REACHED = 1e-6
-"""Tolerance of reaching a grasp [m and rad]."""
+"""Largest distance from a grasp at which it counts as reached [m and rad]."""
 
 
 class WorkspaceTrajectoryTracker(Planner):
@@ -59,7 +59,7 @@ class WorkspaceTrajectoryTracker(Planner):
         return None if goals else self._failed("the trajectory of the hand has no waypoints")
 
     def _goals(self, values: Values, hand: Hand) -> tuple[Floats, list[IkParameterization]]:
-        """Return the times [s] and goals along the trajectory of the hand."""
+        """Return times [s] and tool goals along the trajectory of the hand; empty if it has no waypoints."""
         text = values.tags.get("workspacetrajectory", "")
         if not text:
             raise ArgumentError("there is no trajectory of the hand; give it as <workspacetrajectory>")
@@ -103,7 +103,7 @@ class WorkspaceTrajectoryTracker(Planner):
         return self._timed(values, traj, path, times[: len(path)])
 
     def _is_checked(self, values: Values, time: float) -> bool:
-        """Return whether collisions count at a time [s]."""
+        """Return whether collisions count at a time [s]: from ``ignorefirstcollision`` on."""
         return time >= values.tag("ignorefirstcollision", 0.0)
 
     def _solutions(
@@ -122,7 +122,7 @@ class WorkspaceTrajectoryTracker(Planner):
         return solutions[:1] if flag(values.tags, "greedysearch") else solutions
 
     def _connection(self, values: Values, hand: Hand, times: Floats) -> Callable[[int, Floats, Floats], bool]:
-        """Return a test of the joint-space line between two consecutive solutions.
+        """Return a test whether a joint-space line connects solutions of consecutive goals.
 
         The line is rejected if a joint jumps or is too fast, if the hand turns by more than ``maxdeviationangle`` in
         half of the line, or if the robot collides on it.

@@ -153,7 +153,7 @@ class PathPlanner(Planner):
         return self._told(values, status)
 
     def _certified(self, values: Values, traj: Trajectory, status: PlannerStatus) -> PlannerStatus:
-        """Certify a motion; if that fails, search for one that can be certified."""
+        """Certify a motion, or replace it by one that can be certified; fail only if a certificate is required."""
         search = self._search_made
         if traj.is_certified():
             return status
@@ -169,7 +169,7 @@ class PathPlanner(Planner):
         return self._failed(str(certificate)) if values.certify == "required" else status
 
     def _alternatives(self, values: Values, search: Search | None) -> Iterator[tuple[Search, Values]]:
-        """Yield alternative paths with their post-processing parameters, which certify each line that shortens a path.
+        """Yield alternative paths whose shortcuts are certified, with their post-processing parameters.
 
         In the last path, all edges are certified.
         """
@@ -266,10 +266,10 @@ class ExplorationRrt(PathPlanner):
 def _with_first_roots(
     name: str, given: Floats, sampler: Sampler | None, draw: Callable[[RootSource], list[Floats]]
 ) -> list[Floats]:
-    """Return the starts or goals, including those drawn by a sampler before the search; ``name`` says which.
+    """Return the given starts or goals, and those that a sampler draws before the search.
 
     Raises:
-        RefusedError: there is no start or goal, and none of the poses sampled from regions can be reached.
+        RefusedError: there is no ``name`` (start or goal), since no pose sampled from the regions can be reached.
     """
     roots = [*given, *([] if sampler is None else draw(sampler.source))]
     tally = None if sampler is None else sampler.source.tally
@@ -279,7 +279,7 @@ def _with_first_roots(
 
 
 def _further(sampler: Sampler | None, refuse: Refuse) -> MoreRoots | None:
-    """Return a source of further starts or goals that omits refused ones."""
+    """Return a source that samples starts or goals during the search, without refused ones; None without sampler."""
     return None if sampler is None else MoreRoots(lambda: sampler.source.next(refuse), sampler.probability)
 
 

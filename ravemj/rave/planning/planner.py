@@ -263,12 +263,12 @@ class Planner(Interface):
         raise NotImplementedError
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
-        """Return the status if a problem cannot be solved, else None."""
+        """Return a failure status if the parameters are unsuitable, else None."""
         del values
         return None
 
     def _proceed(self, iteration: int) -> bool:
-        """Call the callbacks, and return whether to continue."""
+        """Call the user's callbacks; return False if one of them interrupts."""
         for callback in tuple(self._callbacks):
             self._action = int(callback(PlannerProgress(iteration)) or 0)
             if self._action == PlannerAction.Interrupt:

@@ -61,7 +61,7 @@ class Retimer(Planner):
     _defaults: ClassVar[Mapping[str, str]] = TIMING
 
     def _prepare(self, values: Values) -> PlannerStatus | None:
-        """Return the status if the interpolation is not the retimer's, else None."""
+        """Return a failure status if the requested interpolation is not the retimer's, else None."""
         try:
             profile_of(self._xmlid, values.tags)
         except RetimingError as error:
@@ -97,7 +97,7 @@ TRAJECTORY_PLANNERS: Mapping[str, "Callable[[Environment, str], Planner]"] = {
 def _processed(
     env: "Environment", name: str, values: Values, path: Waypoints, proceed: Callable[[int], bool]
 ) -> tuple[Waypoints, Certificate | None]:
-    """Run a retimer or smoother on a path; return also the certificate of ``Processor.process``.
+    """Run a retimer or smoother on a path; return the motion, and its certificate if a smoother made one.
 
     Raises:
         RetimingError: the path cannot be retimed.
@@ -142,7 +142,7 @@ def _chain(values: Values) -> Iterator[tuple[str, Values]]:
 def _curved(
     run: Callable[[str], tuple[Waypoints, Certificate | None]], values: Values, find_body: FindBody
 ) -> tuple[Waypoints, Certificate | None]:
-    """Return a smooth motion through a path on a constraint; with corners if a smooth one would leave the constraint.
+    """Return a smooth motion along a constrained path, or one with stops if a smooth one violates the constraint.
 
     ``run`` retimes the path with the named retimer.
     """

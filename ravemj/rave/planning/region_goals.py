@@ -28,7 +28,7 @@ from ravemj.rave.region import Region
 from ravemj.rave.specification import IkParameterization
 
 _PROJECTED = 0.1
-"""Projections stop at this fraction of the tolerance, so that rounding does not reject their results."""
+"""Error at which a projection stops, as a fraction of the tolerance, so that rounding does not reject its result."""
 
 _TRIES = 4
 """Number of random configurations to project onto a region if the arm has no IK solver."""
@@ -43,7 +43,7 @@ _SAME = 1e-9
 """Tolerance of equal values [rad or m]."""
 
 _FULL_POSE = 6
-"""Minimum number of arm joints for a full pose."""
+"""Minimum number of joints of an arm that can reach full poses."""
 
 _Type = IkParameterization.Type
 _NO_COLLISIONS = int(IkFilterOptions.IgnoreSelfCollisions)
@@ -124,7 +124,7 @@ def preshaped_dofs(manip: Manipulator, regions: Sequence[Region]) -> list[int]:
 
 
 def _at_start(hand: Hand, region: Region) -> Floats:
-    """Return the present configuration with the preshape of a region, shape (n,)."""
+    """Return the present configuration, with the gripper at the preshape of a region; shape (n,)."""
     bodies, manip = hand.tool.bodies, hand.manip
     values, active = bodies.values(), [dof for part in bodies.parts for dof in part.dofs]
     for dof in preshaped_dofs(manip, [region]):
@@ -139,7 +139,7 @@ def _at_start(hand: Hand, region: Region) -> Floats:
 
 
 def _names(regions: Sequence[Region]) -> list[str]:
-    """Return unique names of regions; an unnamed region, or one whose name is taken, gets its index."""
+    """Return unique names of regions; a region without name, or with that of another, gets its index."""
     given = Counter(region.name for region in regions)
     return [
         one.name if one.name and given[one.name] == 1 else f"{one.name or 'region'} {number}"
@@ -148,7 +148,7 @@ def _names(regions: Sequence[Region]) -> list[str]:
 
 
 class _PoseSolver:
-    """IK of poses in regions, by the solver of an arm or by projection."""
+    """IK for poses in regions: by the arm's solver, or by projecting random configurations."""
 
     def __init__(self, hand: Hand, space: Space, errors: Sequence[Error], starts: Sequence[Floats]) -> None:
         self._manip, self._space, self._errors, self._starts = hand.manip, space, errors, starts
@@ -198,7 +198,7 @@ class _PoseSolver:
         return Cause.LIMITS if shortfall(solver, goal)[1] else Cause.REACH
 
     def shortfall(self, region: int, poses: PoseSet, T_world_tool: Floats) -> str:
-        """Describe how far the tool stays from a region at best.
+        """Describe how near to a region the tool gets.
 
         This is a local minimum, found from the reachable configuration nearest to one pose of the region.
         """
@@ -216,7 +216,7 @@ class _PoseSolver:
         return str(replace(near, distance=distance, angle=angle))
 
     def search(self, region: int, T_world_tool: Floats, random: np.random.Generator) -> PoseSolutions:
-        """Return configurations in a region, projected from random ones; the sampled pose is not used."""
+        """Project random configurations onto a region; return those that succeed. ``T_world_tool`` is ignored."""
         del T_world_tool
         starts = np.array([self._space.sample(random) for _ in range(_TRIES)])
         starts[:, self._rest] = self._starts[region][self._rest]
@@ -233,9 +233,10 @@ class _PoseSolver:
 
 
 def _some(rows: Floats, near: Floats, random: np.random.Generator) -> Floats:
-    """Return a subset of many solutions: the nearest of those that differ by full turns, in random order, then others.
+    """Return at most ``_MOST_ROWS`` of many IK solutions.
 
-    Paths to configurations that are several turns away are long, and reach the same tool pose.
+    Of those that differ by full turns, the ones nearest to ``near`` come first, in random order: paths to the others
+    are long and reach the same tool pose.
     """
     rows = rows[np.argsort(np.linalg.norm(rows - near, axis=1), kind="stable")]
     first = np.unique(np.round(np.mod(rows, 2 * np.pi), 6), axis=0, return_index=True)[1]

@@ -310,7 +310,7 @@ class Values:
 
 
 def _setting(env: "Environment", bodies: Bodies, name: str) -> Floats:
-    """Return a setting of each configuration value, shape (n,), from the joints or the affine DOFs."""
+    """Return a property of each configuration value, shape (n,), such as a limit, from joints and affine DOFs."""
     numbers = bodies.numbers(name)
     for part in bodies.parts:
         if not part.dofs:

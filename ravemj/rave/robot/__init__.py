@@ -442,7 +442,7 @@ class Robot(ActiveDofs):
     ik_solvers: dict[str, IkSolver]
     """The IK solvers, by the names of their manipulators."""
     _active_manipulator: str | None
-    """Name of the active manipulator; None for the first, empty for none."""
+    """Name of the active manipulator; None means the first, an empty string none."""
     _manipulators: tuple[Manipulator, ...] = ()
     _grippers: tuple[GripperInfo, ...] = ()
 
@@ -783,10 +783,10 @@ class Robot(ActiveDofs):
     def _place(
         self, name: str, parts: Sequence[scene.Manipulator | scene.AttachedSensor], replaces: bool, caller: str
     ) -> int:
-        """Return the list index for a new part: the index of the part that it replaces, else the length of the list.
+        """Return the list index for a new part: that of the part with the same name, else the length of the list.
 
         Raises:
-            ArgumentError: the name is taken, and the new part does not replace the old one.
+            ArgumentError: the name is taken, and ``replaces`` is False.
         """
         index = next((index for index, part in enumerate(parts) if part.name == name), len(parts))
         if index < len(parts) and not replaces:

@@ -41,7 +41,7 @@ class _WithKinds(Protocol):
 
 
 class _AffineKind(NamedTuple):
-    """OpenRAVE's defaults for one type of affine DOFs, and words for the docstrings."""
+    """One type of affine DOFs: OpenRAVE's defaults, and words for generated docstrings."""
 
     size: int
     limit: float
@@ -65,7 +65,7 @@ _SETTINGS = {
     "Resolution": (("resolution",), "the planners' steps of the base's {values} [{unit}], shape ({size},)."),
     "Weights": (("weight",), "the weights of the base's {values} in distances, shape ({size},)."),
 }
-"""By suffix of the method names: the fields of ``AffineKind``, and words for the docstrings."""
+"""Fields of ``AffineKind``, and words for generated docstrings, by suffix of the method names."""
 
 _ARGUMENTS = {
     "MaxVels": "\n\nArgs:\n    {argument}: Largest velocities.",

@@ -592,10 +592,10 @@ class WholeBodyIK(ApiObject):
         return f"<WholeBodyIK of {self._robot.GetName()!r}: {variables}, {len(self._tasks)} tasks>"
 
     def _check(self) -> None:
-        """Apply changed limits.
+        """Apply limits that users have changed.
 
         Raises:
-            RavemjError: the joints of the robot have changed.
+            RavemjError: the robot's joints have changed.
             ArgumentError: a limit is invalid.
         """
         if not self._moving.is_current():
@@ -637,7 +637,7 @@ class WholeBodyIK(ApiObject):
         )
 
     def _variable_names(self) -> list[str]:
-        """Return the names of the active joints; multi-axis joints get numbered names."""
+        """Return a name for each active DOF; those of joints with several axes are numbered."""
         names: list[str] = []
         for dof in self._moving.dofs.tolist():
             joint = self._robot.GetJointFromDOFIndex(dof)
@@ -646,7 +646,7 @@ class WholeBodyIK(ApiObject):
         return names
 
     def _pressed_limits(self) -> list[str]:
-        """Return the joints at a limit beyond which the cost would decrease."""
+        """Return sentences that name the joints at a limit beyond which the cost would decrease."""
         limits, values, pull = self._descent.limits, self._moving.values(), self._descent.pressing()
         sentences: list[str] = []
         for index, name in enumerate(self._variable_names()):

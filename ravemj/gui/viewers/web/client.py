@@ -36,7 +36,7 @@ _MOST_AT_ONCE = 100
 
 
 _Update = Frame | list[str | bytes]
-"""A picture, or messages for a page that renders the scene itself."""
+"""Update to send to a page: a picture, or messages if the page renders the scene itself."""
 
 
 class Connection(Protocol):
@@ -187,7 +187,7 @@ class Client:
         return picture
 
     def _update_if_due(self, style: PageStyle) -> _Update | None:
-        """Handle the queued events; return the update to send, if one is due."""
+        """Handle the queued events; return the update to send to the page, or None if none is due."""
         now = self._clock()
         # A short timeout, since the thread that holds the lock may be waiting for this one to end.
         with self._simulation.lock.attempt(_PERIOD) as self._sees_bodies:
@@ -202,7 +202,7 @@ class Client:
         return self._picture(overlay, style, self._level(now))
 
     def _overlay_if_due(self, style: PageStyle, now: float) -> Overlay | None:
-        """Handle the queued events under the simulation's lock; return the overlay if an update is due."""
+        """Handle the queued events under the simulation's lock; return the overlay if an update is due, else None."""
         self._free_at = now
         self.interaction.advance(now)
         before = self.interaction.view.camera
@@ -226,7 +226,7 @@ class Client:
         return overlay
 
     def _update_of_view(self, style: PageStyle, now: float) -> _Update | None:
-        """Handle view events while other threads hold the lock; return the update to send, if one is due."""
+        """Handle only view events, while others hold the simulation's lock; return the update if one is due."""
         before = self.interaction.view.camera
         self._waiting = deque(self.interaction.handle_view_events(list(self._waiting)))
         self._has_moved |= self.interaction.view.camera is not before
@@ -248,12 +248,12 @@ class Client:
         return self._renderer.render_again(self.interaction.drawn_view.camera, style.look, self._form(level, style))
 
     def _view(self, style: PageStyle) -> object:
-        """Return a key that changes when the view must be redrawn, except for texts and unpublished body poses."""
+        """Return a key that changes if the view must be redrawn; it ignores texts and unpublished body poses."""
         view, published = self.interaction.drawn_view, self._simulation.published.number
         return view.camera, view.size, self.interaction.mode, style, self._ratio, published
 
     def _is_due(self, now: float, *, has_changed: bool) -> bool:
-        """Return whether a frame is due: the view has changed, or came to rest."""
+        """Return whether to draw a frame: the view has changed, or has come to rest and needs full quality."""
         if has_changed:
             self._changed_at, self._is_crisp = now, False
         elif self._is_crisp or now - self._changed_at < REST:
@@ -263,7 +263,6 @@ class Client:
         return True
 
     def _level(self, now: float) -> Level:
-        """Return the quality level of the next frame."""
         if self._is_crisp:
             return CRISP
         level = self._sharpness.level_while_moving(now)
@@ -317,13 +316,13 @@ class Client:
                 connection.send(encoding.as_jpeg(update, pacing.quality))
 
     def _news(self, feed: Feed, stage: Stage, overlay: Overlay, style: PageStyle) -> list[str | bytes]:
-        """Return the messages with all changes for a page that renders itself."""
+        """Return messages with all changes, for a page that renders the scene itself."""
         labels = [(*label.point.tolist(), label.text) for label in overlay.labels]
         text = {**self._text(overlay, style), "labels": labels, "look": stage.look, "crisp": True}
         return feed.messages(stage, self.interaction.drawn_view, text, self._acknowledged)
 
     def _text(self, overlay: Overlay, style: PageStyle) -> dict[str, object]:
-        """Return texts and controls of the page, by field."""
+        """Return the texts and controls of a page, by message field."""
         return {
             "lines": overlay.lines,
             "textSize": overlay.text_size,

@@ -146,7 +146,7 @@ class Feed:
 
 
 def _changed(before: dict[str, Any], after: dict[str, Any]) -> dict[str, Any]:
-    """Return the changed fields; if only values of controls changed, ``changed`` contains those controls."""
+    """Return the changed fields; if only values of controls changed, the field ``changed`` lists those controls."""
     said = {name: value for name, value in after.items() if name not in before or before[name] != value}
     old, new = before.get("controls", ()), said.get("controls", ())
     if new and [control.name for control in old] == [control.name for control in new]:
@@ -193,7 +193,6 @@ def _drawn(kind: int, primitives: Primitives) -> bytes:
 
 
 def _is_same(drawn: Primitives, other: Primitives) -> bool:
-    """Return whether two drawings are equal."""
     return drawn is other or all(
         np.array_equal(array, others)
         for batch, other_batch in zip(drawn.batches, other.batches, strict=True)

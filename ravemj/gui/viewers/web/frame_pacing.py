@@ -17,7 +17,7 @@ _DROP, _RISE = 0.7, 0.05
 _WORST, _BEST = 25, 85
 _GOOD, _HALF = 0.5, 0.4
 _FORGETTING = 1.02
-"""Growth of the minimum round-trip time per frame, so that the estimate follows a connection that becomes slower."""
+"""Growth per frame of the estimated minimum round-trip time, which lets it follow a slowing connection."""
 
 
 class ConnectionPacing:

@@ -62,7 +62,7 @@ class Guesses:
 
 
 def _network(peer: str) -> bytes:
-    """Return the part of an address that a machine cannot change: all of IPv4, the first half of IPv6."""
+    """Return the part of an IP address that identifies a machine: all of IPv4, the first half of IPv6."""
     try:
         address = ipaddress.ip_address(peer.partition("%")[0])
     except ValueError:

@@ -140,7 +140,7 @@ def _name(kind: str) -> Callable[[object], str]:
 
 
 def _file_path(path: object) -> str:
-    """Validate the path of an uploaded file, which may include folders."""
+    """Return the checked path of an uploaded file, which may include folders."""
     parts = path.split("/") if isinstance(path, str) else []
     if not 0 < len(parts) <= _DEEPEST:
         raise ValueError("there are no such files")

@@ -32,7 +32,7 @@ _LOCAL_NAMES = {LOOPBACK, "localhost", "::1"}
 _EVERYWHERE = {"", "0.0.0.0", "::"}
 _SOCKET = "socket"
 _FOREVER = "private, max-age=31536000, immutable"
-"""Cache-Control of content whose name is its hash."""
+"""Cache-Control header of content that is named by its hash, so that it never changes."""
 
 _TOKEN = re.compile(r"[A-Za-z0-9_-]{8,64}")
 _MAY_REPEAT = {"forwarded", "via", "x-forwarded-for", "x-forwarded-port", "x-forwarded-proto"}
@@ -254,7 +254,7 @@ class PageServer:
 
 @before_end
 def _close_all() -> None:
-    """Wait for the threads of pages: Python must not exit while OpenGL draws."""
+    """Close the servers and wait for their pages' threads: Python must not exit while OpenGL draws."""
     for server in _servers.copy():
         server.close()
 
@@ -323,7 +323,7 @@ def _is_refused(connection: socket.socket) -> bool:
 
 
 def _repeated(headers: Headers) -> Response | None:
-    """Return a refusal if a header is repeated, since proxies may interpret that differently."""
+    """Return a refusal if a header occurs more than once, which proxies may interpret differently; else None."""
     names = [name.lower() for name, _ in headers.raw_items()]
     again = next((name for name in names if names.count(name) > 1 and name not in _MAY_REPEAT), None)
     if again is None:

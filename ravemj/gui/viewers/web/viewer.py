@@ -207,7 +207,7 @@ class WebViewer(Viewer):
             uploads.complete.pop(0).add_to(self.host(), notices)
 
     def _grant(self, request: Request | str, client: Client, connection: ServerConnection, style: PageStyle) -> None:
-        """Perform a requested action that needs the page or writes files."""
+        """Perform an action that needs the page or writes files, such as a picture or a video."""
         if request is Request.PICTURE:
             try:
                 client.send_picture(connection, style)
@@ -226,7 +226,7 @@ class WebViewer(Viewer):
             self._videos.append((interaction, name, content))
 
     def _videos_for(self, interaction: Interaction) -> list[tuple[str, bytes]]:
-        """Return and remove the videos for a page."""
+        """Remove and return the videos to send to a page: its own, and those of disconnected pages."""
         with self._lock:
             others = {client.interaction for client in self._clients.values()} - {interaction}
             videos = [(name, content) for asker, name, content in self._videos if asker not in others]
