@@ -74,13 +74,13 @@ def values(joint: Joint) -> list[float]:
 
 
 def _largest(parts: Sequence[float]) -> int:
-    """Return the index of the largest component; of components that are equal up to rounding, the first."""
+    """Return the index of the largest component in magnitude; of those equal up to rounding, the first."""
     largest = max(map(abs, parts))
     return next(index for index, part in enumerate(parts) if abs(part) >= largest - _TIE)
 
 
 def _unit(parts: Sequence[float]) -> tuple[float, ...]:
-    """Round a unit vector; its largest component is computed from the others, so that normalizing changes nothing."""
+    """Round a unit vector; compute its largest component from the others, so that normalizing it changes nothing."""
     rounded = [_snapped(round(part, _UNIT_DECIMALS)) for part in parts]
     index = _largest(parts)
     rest = sum(part * part for place, part in enumerate(rounded) if place != index)
@@ -89,5 +89,5 @@ def _unit(parts: Sequence[float]) -> tuple[float, ...]:
 
 
 def _snapped(part: float) -> float:
-    """Return the exact sine of 45 degrees for numbers near it, since right angles are frequent in models."""
+    """Round a number near +-sin 45 deg to it exactly, since right angles are frequent in quaternions."""
     return math.copysign(_SQRT_HALF, part) if abs(abs(part) - _SQRT_HALF) < 1e-12 else part

@@ -15,7 +15,7 @@ from ravemj.model.scene import KinBody
 _WORLD = -1
 
 _Cells = dict[int, list[int]]
-"""Links by weld group."""
+"""Link indices by weld group."""
 
 
 @dataclass(slots=True)
@@ -97,7 +97,7 @@ def excluded_pairs(body: KinBody, welds: WeldGroups) -> list[Pair]:
 
 
 def _cells(labels: list[int], welds: WeldGroups) -> dict[int, _Cells]:
-    """Return the solid links by label and weld group."""
+    """Return the links with collision geometry by their label, then by weld group."""
     cells: dict[int, _Cells] = {}
     for link in welds.solid:
         cells.setdefault(labels[link], {}).setdefault(welds.group[link], []).append(link)

@@ -6,7 +6,7 @@ import re
 
 _VECTOR = re.compile(r'(?<= )(pos|quat|axis|dir|size|gravity|rgba)="([^"]*\d{9}[^"]*)"')  # with a long number in it
 _NOISE = 8
-"""Maximum change of a number, in units in the last place of the vector's largest number."""
+"""Maximum rounding of a vector's numbers, in units in the last place of the largest one."""
 
 
 def tidy(line: str) -> str:
@@ -32,7 +32,7 @@ def tidy_vector(text: str) -> str:
 
 
 def _shortest(number: float, noise: float) -> str:
-    """Return the shortest decimal within ``noise`` of a number."""
+    """Return the shortest decimal that differs from ``number`` by at most ``noise``."""
     if abs(number) <= noise:
         return "0"
     few, enough = 0, 17  # insufficient and sufficient numbers of digits; more digits are never less accurate

@@ -20,12 +20,12 @@ from ravemj.formats.parameters import with_parameter
 from ravemj.model.scene import Parameters
 
 _MOST_ABOVE = 4
-"""Number of parent folders of a file that are searched for its references; repositories are not nested deeper."""
+"""Number of parent folders that are searched for a referenced file; repositories are not nested deeper."""
 FLAGS = {"enable", "circular", "render", "modifiable", "selfcollision", "skipgeometry"}
 """Attributes of any element that are true or false."""
 PARAMETER_ATTRIBUTES = {"name": "what scripts ask for", "type": "floats, integers or text"}
 _LONGEST_NAME = 80
-"""Length of names above which no similar known name is searched."""
+"""Maximum length of an unknown name for which a similar known name is suggested."""
 
 
 def uncomputable(element: Element) -> SourceError:
@@ -273,7 +273,7 @@ PLACEMENT_TAGS: dict[str, Tag[Placed]] = {
 
 
 def _found_above(name: str, folder: str, access: FileAccess) -> str | None:
-    """Return the path of a file in a folder above ``folder``; None if no folder or several folders contain it.
+    """Return the path of the file ``name`` in a parent of ``folder``; None unless exactly one parent contains it.
 
     The search ends at the root of a repository, or after ``_MOST_ABOVE`` folders.
     """
@@ -309,7 +309,7 @@ _HOMES = {
 
 
 def _belongs(element: Element) -> str:
-    """Return a hint for a misplaced element, or an empty text."""
+    """Return a hint where a misplaced element belongs, or an empty string."""
     home = _HOMES.get(element.tag)
     return "" if home is None else f"<{element.spelled}> belongs in <{home}>"
 

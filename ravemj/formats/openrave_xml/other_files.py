@@ -95,7 +95,10 @@ def uniform(scale: Vec3, source: Source, context: Context) -> float:
 
 
 def _join(body: BodyBuilder, other: BodyBuilder) -> None:
-    """Merge one body into another; links with equal names are merged, and the first such link fixes the pose."""
+    """Merge ``other`` into ``body``. Links with equal names are merged.
+
+    If the first link of ``other`` is among them, ``other`` is moved so that its pose agrees with ``body``.
+    """
     places = [body.find_link(link.name) for link in other.links]
     T_body_other = Pose()
     if places[0] is not None:

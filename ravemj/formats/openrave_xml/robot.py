@@ -21,7 +21,7 @@ def named_link(body: BodyBuilder, element: Element, owner: str, context: Context
 
 
 class _ManipulatorScope(Placed):
-    """An open ``<Manipulator>``."""
+    """Reading state of a ``<Manipulator>``."""
 
     def __init__(self, body: BodyBuilder, built: ManipulatorBuilder, context: Context) -> None:
         super().__init__(context)
@@ -86,7 +86,7 @@ def read_manipulator(body: BodyBuilder, element: Element, context: Context) -> N
 
 
 class _SensorScope(Placed):
-    """An open ``<AttachedSensor>``."""
+    """Reading state of an ``<AttachedSensor>``."""
 
     def __init__(self, body: BodyBuilder, context: Context) -> None:
         super().__init__(context)

@@ -118,11 +118,11 @@ _HINTS = {
     expat.errors.XML_ERROR_INCORRECT_ENCODING: "leave the encoding out of its first line",
     expat.errors.XML_ERROR_MISPLACED_XML_PI: "let the file begin with <?xml",
 }
-"""Hints for expat's syntax errors; for others, the open element is more helpful."""
+"""Hints for expat's syntax errors. For other errors, naming the open element helps more."""
 
 
 class _TreeBuilder:
-    """Builds the tree from expat's events."""
+    """Builds the element tree from expat's events."""
 
     def __init__(self, path: str, included_from: Source | None) -> None:
         self.root: Element | None = None
@@ -156,7 +156,7 @@ class _TreeBuilder:
         return None
 
     def _explained(self, error: expat.ExpatError) -> SourceError:
-        """Return an explained syntax error. An invalid token may be in another encoding, or not XML at all."""
+        """Return a syntax error with an explanation: another encoding, no XML at all, or a hint from `_HINTS`."""
         source = Source(self._path, error.lineno, self._included_from)
         if not self._content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):  # half of whose bytes are 0
             if b"\0" in self._content:
@@ -220,7 +220,7 @@ class _TreeBuilder:
             self._entities.append(f"&{name};")
 
     def _refuse_entities(self) -> None:
-        """Refuse a start tag that contains entities defined in the file, which expat replaces silently."""
+        """Raise if the start tag contains entities defined in the file, which expat replaces without notice."""
         start = self._expat.CurrentByteIndex
         end = self._content.find(b"<", start + 1)  # values may hold a ">", never a "<"
         tag = self._content[start:end].replace(b"\0", b"")  # UTF-16 has zeros

@@ -87,7 +87,7 @@ _COUNTABLE = re.compile(
     rb"|shift_?jis|euc-?\w+|koi8-?\w",
     re.IGNORECASE,
 )
-"""Encodings in which ``<`` has its ASCII code, so that elements can be counted before parsing."""
+"""Encodings in which ``<`` has its ASCII code, so that tags can be counted before parsing."""
 
 
 def parse_tree(data: bytes, path: str) -> Element | None:
@@ -122,7 +122,7 @@ def children(element: Element | None, *kinds: str) -> Iterator[Element]:
 
 @functools.cache
 def _patterns(kinds: tuple[str, ...]) -> tuple[str, ...]:
-    """Return lxml patterns for elements of some kinds in any namespace."""
+    """Return lxml patterns that match elements of these names in any namespace."""
     return tuple(f"{{*}}{kind}" for kind in kinds)
 
 

@@ -37,7 +37,7 @@ def parse(document: InventorDocument, data: bytes) -> list[InventorNode]:
 
 
 class _BinaryReader:
-    """Sequential reader; ``_at`` is the end of the data read."""
+    """Sequential reader; ``_at`` is the offset of the next byte."""
 
     def __init__(self, document: InventorDocument, body: bytes, flagged: bool) -> None:
         self._document = document
@@ -100,7 +100,7 @@ class _BinaryReader:
         return int(struct.unpack(">i", self._take(4))[0])
 
     def _count(self, bytes_each: int) -> int:
-        """Return the number of following items, checked against the rest of the file."""
+        """Read a number of items; raise if items of ``bytes_each`` bytes would exceed the file."""
         count = self._integer()
         if count < 0 or count * bytes_each > len(self._body) - self._at:
             self._fail("the file ends too early")

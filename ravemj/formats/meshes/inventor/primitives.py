@@ -61,13 +61,13 @@ def _joined(parts: Set[str], **pieces: Floats) -> Floats:
 
 
 def _circle(count: int) -> Floats:
-    """Return points of the unit circle about y, counter-clockwise seen from above (+y)."""
+    """Return ``count`` points of the unit circle about the y axis, counter-clockwise seen from +y."""
     angles = 2 * np.pi * np.arange(count) / count
     return np.stack([-np.sin(angles), np.zeros(count), -np.cos(angles)], axis=1)
 
 
 def _band(high: Floats, low: Floats) -> Floats:
-    """Return the triangles between two rings, facing outwards."""
+    """Return triangles that connect two rings of equally many points, facing outwards; ``high`` is the upper ring."""
     high_next, low_next = np.roll(high, -1, axis=0), np.roll(low, -1, axis=0)
     return np.concatenate([np.stack([high, low, low_next], axis=1), np.stack([high, low_next, high_next], axis=1)])
 
