@@ -70,7 +70,7 @@ def _run(arguments: Sequence[str]) -> int:
 
 
 def _explain(error: OSError) -> None:
-    """Print an operating system error; an error without file name concerns standard output."""
+    """Print the message of an operating system error; without a file name, it concerns standard output."""
     reason = (error.strerror or str(error)).lower()
     if error.filename is not None:
         print_error(RavemjError(f"{error.filename}: {reason}"))
@@ -83,7 +83,7 @@ def _explain(error: OSError) -> None:
 
 
 def _joined(words: Sequence[str]) -> list[str]:
-    """Join ``--to -1,0`` to ``--to=-1,0``, since argparse interprets values with a leading dash as options."""
+    """Join ``--to -1,0`` to ``--to=-1,0``, since argparse takes values with a leading dash for options."""
     joined: list[str] = []
     for word in words:
         if joined and joined[-1] in _VECTOR_OPTIONS and re.match(r"-([\d.]|inf|nan)", word, re.IGNORECASE):

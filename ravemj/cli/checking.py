@@ -54,7 +54,7 @@ def _fatal(error: SourceError) -> Diagnostic:
 
 
 def _outside_files(path: str | os.PathLike[str], named: Mapping[str, Source]) -> Iterator[Diagnostic]:
-    """Yield a note for each file outside of a model's folder, which may be missing on other machines."""
+    """Yield a note for each referenced file outside the model's folder, as it may be missing on other machines."""
     folder = os.path.dirname(os.path.abspath(path))
     if os.fspath(path).lower().endswith(".urdf"):
         folder = os.path.dirname(folder)  # packages have a folder for URDF, and others beside it for meshes
@@ -67,7 +67,7 @@ def _outside_files(path: str | os.PathLike[str], named: Mapping[str, Source]) ->
 
 
 def _default_masses(body: KinBody) -> Iterator[Diagnostic]:
-    """Yield a note for each moving link with OpenRAVE's default mass because the file gives none."""
+    """Yield a note for each moving link that has OpenRAVE's default mass because its file gives none."""
     for link in body.links:
         if link.inertial is DEFAULT_INERTIAL and not link.static:
             message = "a Body without a <Mass> weighs 1 kg, with the inertia of a sphere of 1 m"

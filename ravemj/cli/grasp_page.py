@@ -39,7 +39,7 @@ _LEGEND = (
 
 
 class _DrawnHand(NamedTuple):
-    """Copy of the robot that shows a grasp by its hand."""
+    """Copy of the robot of which only the hand is visible, at a grasp."""
 
     robot: Robot
     gripper: list[int]
@@ -50,7 +50,7 @@ class _DrawnHand(NamedTuple):
 
 
 class _DrawnArm(NamedTuple):
-    """Copy of the robot that shows a grasp; ``rows`` are values of the arm from the grasp back along the approach."""
+    """Copy of the robot at a grasp; ``rows`` are arm configurations along the retreat from the grasp."""
 
     robot: Robot
     joints: list[int]
@@ -107,7 +107,7 @@ def _told(grasp: Grasp) -> str:
 
 
 def _reach(arm: Manipulator, target: KinBody) -> float:
-    """Return a radius around the target in which the hand moves [m]."""
+    """Return a radius [m] around the target that contains all motion of the hand."""
     boxes = [link.ComputeAABB() for link in arm.GetChildLinks()]
     low = np.min([box.pos() - box.extents() for box in boxes], axis=0)
     high = np.max([box.pos() + box.extents() for box in boxes], axis=0)
@@ -124,7 +124,7 @@ def _copied(env: Environment, body: KinBody, number: int) -> KinBody:
 
 
 def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, number: int) -> _DrawnHand:
-    """Add a copy of the robot of which only the hand is visible."""
+    """Add a copy of the robot of which only the hand is visible, for a grasp."""
     robot = cast("Robot", RaveCreateRobot(env, ""))
     robot.Clone(arm.GetRobot(), 0)
     robot.SetName(f"{arm.GetRobot().GetName()} {number}")
@@ -145,7 +145,10 @@ def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, num
 
 
 def _arm(env: Environment, arm: Manipulator, body: KinBody, target: KinBody, grasp: Grasp) -> _DrawnArm:
-    """Add a copy of the robot with its approach; it has the robot's pose relative to ``body``, a copy of the target."""
+    """Add a copy of the robot that approaches a grasp of ``body``, a copy of the target.
+
+    The robot's pose relative to ``body`` is that of the original relative to the target.
+    """
     T_world_target = body.GetTransform()
     robot = cast("Robot", RaveCreateRobot(env, ""))
     robot.Clone(arm.GetRobot(), 0)
@@ -165,7 +168,7 @@ def _arm(env: Environment, arm: Manipulator, body: KinBody, target: KinBody, gra
 
 
 def _motion(hands: Sequence[_DrawnHand], arms: Sequence[_DrawnArm]) -> BodyMotion:
-    """Return the motion of all hands: to the target along a straight line, then the fingers close."""
+    """Return the motion of all hands: approach along a straight line, then closing of the fingers."""
 
     def place(time: float) -> None:
         back = _BACK * max(0.0, 1 - time / _APPROACH)

@@ -117,7 +117,7 @@ def _next(course: Course, progress: Progress) -> Exercise:
 
 
 def _watch(course: Course, progress: Progress, wanted: list[Exercise]) -> int:
-    """Check the next unsolved exercise, or the wanted ones, after each save until Ctrl-C."""
+    """Check the wanted exercises, else the next unsolved one, after each save until Ctrl-C."""
     stamps: dict[Exercise, int] = {}
     while True:
         present = {exercise: _stamp(progress.file(exercise)) for exercise in wanted or course.exercises}
@@ -132,7 +132,7 @@ def _watch(course: Course, progress: Progress, wanted: list[Exercise]) -> int:
 
 
 def _report_saved(course: Course, progress: Progress, saved: list[Exercise], others: Sequence[Exercise]) -> None:
-    """Check the saved exercises; name the next one if they are solved or if none was saved."""
+    """Check the saved exercises; if all are solved or none was saved, name the next exercise of ``others``."""
     verdicts = [_checked(progress, exercise) for exercise in saved]
     for exercise, verdict in zip(saved, verdicts, strict=True):
         print(f"{report(exercise, verdict)}\n", flush=True)

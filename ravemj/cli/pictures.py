@@ -75,10 +75,10 @@ def play(options: argparse.Namespace) -> int:
 
 
 def _check_length(motion: BodyMotion, fps: float) -> None:
-    """Check that a video of a motion would not fill the disk.
+    """Check that the number of frames of a video is within ``_MOST_FRAMES``.
 
     Raises:
-        ArgumentError: the motion has too many frames.
+        ArgumentError: The motion has too many frames.
     """
     count = number_of_frames(motion.duration, fps)
     if count > _MOST_FRAMES:
@@ -96,7 +96,7 @@ def _motion(env: Environment, options: argparse.Namespace) -> BodyMotion:
 
 
 def _line(env: Environment, options: argparse.Namespace) -> tuple[Robot, Motion]:
-    """Return the moving robot, and its straight-line motion to the joint values of ``--to``."""
+    """Return the moving robot, and a straight-line joint motion from its present values to those of ``--to``."""
     robot = moving_robot(env, options.robot)
     start = robot.GetDOFValues()
     if options.to is None:
@@ -107,7 +107,7 @@ def _line(env: Environment, options: argparse.Namespace) -> tuple[Robot, Motion]
 
 
 def _play_to_robot(options: argparse.Namespace) -> int:
-    """Write a motion for a robot controller."""
+    """Write the motion to a file for a robot controller; return the exit code."""
     check_joint_trajectory_file(options.output)
     env = load_model(options)
     if options.trajectory is not None:
@@ -120,10 +120,10 @@ def _play_to_robot(options: argparse.Namespace) -> int:
 
 
 def _checked_values(option: str, values: list[float], body: KinBody) -> list[float]:
-    """Return the joint values of an option, one for each DOF.
+    """Return ``values``, given by an option, after checking that there is one for each DOF.
 
     Raises:
-        ArgumentError: the number of values is wrong.
+        ArgumentError: The number of values is wrong.
     """
     dof = body.GetDOF()
     if len(values) != dof:
@@ -151,7 +151,7 @@ def picture_of(options: argparse.Namespace, env: Environment, camera: ArrayLike 
 
 
 def _play_in_window(env: Environment, motion: BodyMotion, shot: Shot, options: argparse.Namespace) -> bool:
-    """Play in a window, and wait until it is closed; return False if no window can be opened."""
+    """Play a motion in a window until it is closed; return False if no window can be opened."""
     if not has_display():
         return False
     env.SetViewer("window")

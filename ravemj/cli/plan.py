@@ -69,7 +69,7 @@ def plan(options: argparse.Namespace) -> int:
 
 
 def _goal(robot: Robot, arm: Manipulator | None, regions: list[Region], options: argparse.Namespace) -> MotionGoal:
-    """Return the moving joints and the goal."""
+    """Return the moving DOFs and the goal: goal regions, joint values, or IK solutions of a pose."""
     if arm is not None and regions:
         dofs = [*arm.GetArmIndices().tolist(), *preshaped_dofs(arm, regions)]
         return MotionGoal(dofs, np.zeros((0, len(dofs))), regions)
@@ -78,14 +78,17 @@ def _goal(robot: Robot, arm: Manipulator | None, regions: list[Region], options:
 
 
 def _about_itself(told: str, robot: Robot, model: str) -> str:
-    """Return a hint if the robot collides with itself at the start, which is common without an SRDF."""
+    """Return a hint on ``check --self`` if the message ``told`` is that the robot's start is in self-collision.
+
+    This is common without an SRDF. The hint is empty for other messages.
+    """
     if not told.startswith("start:") or told.count(f"of '{robot.GetName()}'") != 2:
         return ""
     return f"; ravemj check {model} --self lists links that always touch, and --write-srdf lets them"
 
 
 def _arm(env: Environment, options: argparse.Namespace) -> Manipulator | None:
-    """Return the moving manipulator; None for a robot without manipulators and a goal of joint values."""
+    """Return the moving manipulator; None if the robot has no manipulators and the goal is joint values."""
     robots = chosen_robots(env, options.robot)
     has_arms = any(robot.GetManipulators() for robot in robots)
     needs_arm = options.manip or options.pose or options.near or options.region or options.upright
@@ -93,10 +96,10 @@ def _arm(env: Environment, options: argparse.Namespace) -> Manipulator | None:
 
 
 def _values(robot: Robot, arm: Manipulator | None, options: argparse.Namespace) -> tuple[list[int], Floats]:
-    """Return the DOF indices of the moving joints, and the joint values of ``--to``.
+    """Return the DOF indices of the moving joints, and the joint values of ``--to``, shape (1, n).
 
     Raises:
-        ArgumentError: the number of values is neither that of the arm's DOFs nor that of all DOFs.
+        ArgumentError: The number of values is neither that of the arm's DOFs nor that of all DOFs.
     """
     every = list(range(robot.GetDOF()))
     dofs = every if arm is None else arm.GetArmIndices().tolist()
@@ -111,11 +114,11 @@ def _values(robot: Robot, arm: Manipulator | None, options: argparse.Namespace) 
 
 
 def _solutions(arm: Manipulator | None, pose: Sequence[float]) -> tuple[list[int], Floats]:
-    """Return the DOF indices of the arm, and its IK solutions of a pose or point, nearest first.
+    """Return the DOF indices of the arm, and its IK solutions for a pose or point, the nearest first.
 
     Raises:
-        ArgumentError: the number of values is neither that of a pose nor that of a point.
-        RavemjError: there is no valid solution.
+        ArgumentError: The number of values is neither that of a pose nor that of a point.
+        RavemjError: There is no valid solution.
     """
     assert arm is not None
     if len(pose) not in {_POSE, _POINT}:
@@ -136,7 +139,7 @@ def _solutions(arm: Manipulator | None, pose: Sequence[float]) -> tuple[list[int
 
 
 def _planned(robot: Robot, arm: Manipulator | None, goal: MotionGoal, options: argparse.Namespace) -> tuple[Plan, str]:
-    """Plan; return the result and a text about the search."""
+    """Plan a motion to the goal; return the result and a text about the search."""
     robot.SetActiveDOFs(goal.dofs)
     params = Planner.PlannerParameters()
     params.SetRobotActiveJoints(robot)
@@ -174,7 +177,7 @@ def _planned(robot: Robot, arm: Manipulator | None, goal: MotionGoal, options: a
 
 
 def _reasons(status: Planner.PlannerStatus) -> list[str]:
-    """Return for each region a text with the number of sampled poses by cause of rejection."""
+    """Return a text for each goal region with the numbers of its sampled poses by cause of rejection."""
     return [
         f"{sum(counts.values())} poses of region '{name}': "
         + ", ".join(f"{number} {cause}" for cause, number in counts.items())
@@ -186,7 +189,10 @@ def _reasons(status: Planner.PlannerStatus) -> list[str]:
 def _outcome(
     robot: Robot, traj: Trajectory, options: argparse.Namespace
 ) -> tuple[Motion, JointTrajectory | None, Certificate | None]:
-    """Return the motion of a trajectory, its points for a robot controller if requested, and the certificate."""
+    """Return a trajectory's motion, the points for a robot controller, and the certificate.
+
+    Points and certificate are None if the options do not request them.
+    """
     motion, points = _motion(robot, traj), None
     if options.output is not None and is_joint_trajectory(options.output):
         start = None if options.start is None else start_values(options.start, robot)
@@ -198,7 +204,7 @@ def _outcome(
 
 
 def _certificate(robot: Robot, motion: Motion) -> Certificate:
-    """Certify a motion as it is written: straight lines between its rows."""
+    """Certify a motion as it is written to a file: straight joint-space lines between its rows."""
     spec = robot.GetConfigurationSpecificationIndices(range(robot.GetDOF()), "linear")
     spec.AddDeltaTimeGroup()
     traj = Trajectory(robot.GetEnv(), "")
@@ -208,7 +214,7 @@ def _certificate(robot: Robot, motion: Motion) -> Certificate:
 
 
 def _motion(robot: Robot, traj: Trajectory) -> Motion:
-    """Convert a trajectory to a motion of all DOFs of a robot."""
+    """Sample a trajectory of the active DOFs; return the motion of all DOFs of the robot."""
     times = np.append(np.arange(0.0, traj.GetDuration() - _STEP / 2, _STEP), traj.GetDuration())
     values = np.tile(robot.GetDOFValues(), (len(times), 1))
     values[:, robot.GetActiveDOFIndices()] = traj.SamplePoints2D(times, robot.GetActiveConfigurationSpecification())

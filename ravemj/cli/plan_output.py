@@ -108,14 +108,14 @@ def write(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> Non
 
 
 def _add_examples(plan: Plan) -> None:
-    """Add a transparent copy of the robot at the example of each cause of rejection."""
+    """Add transparent copies of the robot at the rejected configurations, one for each cause."""
     for cause, values in plan.examples.items():
         if len(values):
             add_ghost(plan.robot, cause, values, plan.dofs)
 
 
 def _fingerprint(env: Environment) -> str:
-    """Return a hash of all bodies: their links, joints, shapes, poses and joint values."""
+    """Return a hash of the scene: links, joints, shapes, pose and joint values of all bodies."""
     numbers = [(body.GetTransform(), body.GetDOFValues()) for body in env.GetBodies()]
     texts = [f"{body.GetName()} {body.GetKinematicsGeometryHash()}" for body in env.GetBodies()]
     rounded = [[(array.round(9) + 0.0).tolist() for array in arrays] for arrays in numbers]
@@ -148,7 +148,11 @@ def _write_picture(plan: Plan, camera: Camera | None, options: argparse.Namespac
 
 
 def _draw(plan: Plan, *, path: bool, trees: bool) -> list[GraphHandle | None]:
-    """Draw the smallest clearance and, if requested, end-effector path and search trees; return the handles."""
+    """Draw the smallest clearance and, if requested, end-effector path and search trees.
+
+    Returns:
+        Handles; the drawings disappear when these are deleted.
+    """
     env, drawn = plan.robot.GetEnv(), list[GraphHandle | None]()
     env.SetViewer("offscreen")  # handles of drawings
     grown = plan.search.trees if trees and plan.search is not None else ()
@@ -178,7 +182,7 @@ def _segments(plan: Plan, nodes: Floats, lines: Sequence[tuple[int, int]]) -> Fl
 
 
 def _hand(plan: Plan, values: Floats) -> Floats:
-    """Return the tool positions in the world for configurations, shape (n, 3); without an arm, of the last link."""
+    """Return the world positions of the tool, or without an arm of the last link's centre of mass, shape (n, 3)."""
     if plan.arm is None:
         link = plan.robot.GetLinks()[-1]
         place = np.nan_to_num(link.GetLocalCOM())

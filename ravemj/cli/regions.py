@@ -95,10 +95,10 @@ def _region(given: object, name: str, path: str, env: Environment) -> Region:
 
 
 def _frame(text: str, env: Environment) -> KinBody | Link:
-    """Return the body ``BODY`` or the link ``BODY/LINK``.
+    """Return the body that ``BODY`` names, or the link that ``BODY/LINK`` names.
 
     Raises:
-        ArgumentError: it does not exist.
+        ArgumentError: There is no such body or link.
     """
     body = env.GetKinBody(text)
     if body is not None:

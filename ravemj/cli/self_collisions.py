@@ -70,7 +70,7 @@ def _touching(robot: Robot) -> frozenset[Pair]:
 
 
 def _configurations(body: KinBody, count: int) -> Floats:
-    """Return random joint values within the limits, shape (count, dof)."""
+    """Return random configurations within the joint limits, shape (count, dof)."""
     reach = [(-math.pi, math.pi) if axis.circular else (axis.lower, axis.upper) for axis in body.dof_axes]
     lower, upper = np.array(reach).reshape(-1, 2).T
     return np.random.default_rng(0).uniform(lower, upper, (count, len(reach)))
@@ -102,7 +102,7 @@ def check(options: argparse.Namespace, model: str) -> int:
 
 
 def _write(path: str, robot: str, pairs: Sequence[Touching], beside: str | None) -> None:
-    """Write an SRDF with disabled pairs: the robot's own SRDF with additions, or a new one."""
+    """Write an SRDF that disables collisions of pairs: the one at ``beside`` with additions, or a new one."""
     lines = [
         f"  <disable_collisions link1={quoteattr(pair.links[0])} link2={quoteattr(pair.links[1])} "
         f'reason="{pair.reason}"/>\n'

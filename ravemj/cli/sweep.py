@@ -68,10 +68,10 @@ def _job_options(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _items(options: argparse.Namespace, before: Mapping[str, Any]) -> Items:
-    """Return the items; their number may be omitted if the sweep is continued.
+    """Return ``--items`` or ``--count``; by default the item count of the sweep that is continued.
 
     Raises:
-        ArgumentError: they are not given.
+        ArgumentError: Neither is given, and there is no count from before.
     """
     given = options.items or options.count
     if given is None and before.get("items", "") is None:
@@ -83,7 +83,7 @@ def _items(options: argparse.Namespace, before: Mapping[str, Any]) -> Items:
 
 @contextmanager
 def _executor(options: argparse.Namespace) -> Generator[int | Executor | None]:
-    """Yield the executor of ``--jobs`` and ``--executor``; a user's executor is shut down at the end."""
+    """Yield the number of ``--jobs``, or None if it is 1, or the executor of ``--executor``; shut the latter down."""
     if options.executor is None:
         yield options.jobs if options.jobs > 1 else None
         return
@@ -97,10 +97,10 @@ def _executor(options: argparse.Namespace) -> Generator[int | Executor | None]:
 
 
 def _function(name: str, option: str) -> Callable[..., Any]:
-    """Import the function ``MODULE:FUNCTION``; modules of the working folder have precedence.
+    """Import the function ``MODULE:FUNCTION``, modules in the working folder first; ``option`` is for messages.
 
     Raises:
-        ArgumentError: it does not exist.
+        ArgumentError: The function does not exist.
     """
     module, colon, attribute = name.partition(":")
     if not (module and colon and attribute):
@@ -117,7 +117,7 @@ def _function(name: str, option: str) -> Callable[..., Any]:
 
 @contextmanager
 def _shown(options: argparse.Namespace) -> Generator[tuple[Progress, Told | None]]:
-    """Show progress: a bar on a terminal, else a line every half minute; with ``--json`` a line for each shard."""
+    """Show progress: as a bar on a terminal, else as a line every half minute; with ``--json`` as a line per shard."""
     begin = last = time.monotonic()
     first: int | None = None  # shards that were done before
 

@@ -26,13 +26,13 @@ Worker: TypeAlias = "Callable[[WindowViewer | WebViewer], Callable[[], None]]"
 """Function that returns, for a viewer, the function to be called periodically while it is open."""
 
 _LOOK = 0.1
-"""Period of checks for changed files [s]."""
+"""Interval between checks for changed files [s]."""
 
 _TIMESTEP = 0.01
 """Time step of physics [s]."""
 
 _ASPECT = 4 / 3
-"""Aspect ratio of a view (width by height)."""
+"""Aspect ratio (width / height) of the view for which the camera is placed."""
 
 
 def view(options: argparse.Namespace) -> int:
@@ -71,7 +71,7 @@ def show(
 
 
 def _open_window(env: Environment, robot: Robot | None, options: argparse.Namespace) -> WindowViewer | None:
-    """Open a window; return None if OpenGL is not available for it."""
+    """Open a window; return None if OpenGL is not available."""
     env.SetViewer("window")
     viewer = env.GetViewer()
     if not isinstance(viewer, WindowViewer):
@@ -81,7 +81,10 @@ def _open_window(env: Environment, robot: Robot | None, options: argparse.Namesp
 
 
 def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
-    """Set the model's name as title; if the file has no camera, view the robot or everything from a corner."""
+    """Set up a viewer: title, camera, selected robot, look and physics.
+
+    Without a camera in the file, the camera shows the robot, or everything, obliquely from above.
+    """
     viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
     if robot is not None or env.renderer.file_camera() is None:
         center, radius = shown_sphere(env, robot)
@@ -103,7 +106,7 @@ def _serve(
     worker: Worker,
     period: float,
 ) -> None:
-    """Serve the page, print its address, and wait for Ctrl-C."""
+    """Serve the web viewer, print its address, and wait for Ctrl-C."""
     from ravemj.gui.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
 
     viewer = env.serve_viewer(options.host, options.port, options.token, options.embed)
@@ -122,7 +125,7 @@ def _serve(
 
 
 def _run_until_closed(viewer: "WindowViewer | WebViewer", work: Callable[[], None], period: float) -> None:
-    """Call a function periodically until a viewer is closed."""
+    """Call ``work`` every ``period`` seconds until the viewer is closed."""
     while viewer.is_open:
         time.sleep(period)
         with signals_delayed():

@@ -18,7 +18,7 @@ from ravemj.rave.whole_body import WholeBodyIK, WholeBodyResult
 _SIZES = (3, 7)
 _MOST_STEPS = 1000
 _BALANCE = 1e-5
-"""Weight of the centre-of-mass task: too small to affect the tolerance of a goal."""
+"""Weight of the centre-of-mass task, too small to affect whether goals are within tolerance."""
 _BASE_ROW = "base x,y,z,qw,qx,qy,qz"
 
 
@@ -40,10 +40,12 @@ def reach(options: argparse.Namespace) -> int:
 
 
 def _solved(robot: Robot, options: argparse.Namespace) -> WholeBodyResult:
-    """Solve and move the robot. If limbs are kept, the base is free, and the centre of mass keeps its x and y.
+    """Solve whole-body IK and move the robot to the result.
+
+    With kept contacts (``--keep``), the base is free, and the centre of mass keeps its x and y.
 
     Raises:
-        ArgumentError: a limb does not exist, or a goal is invalid.
+        ArgumentError: A limb does not exist, or a goal is invalid.
     """
     kept = [name for names in options.keep for name in names]
     ik = WholeBodyIK(robot, base=bool(kept))
@@ -63,7 +65,7 @@ def _solved(robot: Robot, options: argparse.Namespace) -> WholeBodyResult:
 
 
 def _entry(robot: Robot, result: WholeBodyResult) -> dict[str, object]:
-    """Return a result as JSON data; the keys are stable."""
+    """Return a result as JSON data; the keys are part of the interface."""
     return {
         "converged": result.converged,
         "reason": result.reason,
@@ -74,7 +76,7 @@ def _entry(robot: Robot, result: WholeBodyResult) -> dict[str, object]:
 
 
 def _base(robot: Robot) -> list[float]:
-    """Return the pose of the first link, x, y, z, qw, qx, qy, qz."""
+    """Return the world pose of the first link as x, y, z, qw, qx, qy, qz."""
     pose: Floats = robot.GetTransformPose()
     return [*pose[4:].tolist(), *pose[:4].tolist()]
 
