@@ -195,7 +195,7 @@ def _pose(T_world_robot: Floats | None) -> Floats:
 
 
 def _complete(model: GraspUse, row: Floats, answer: tuple[Floats, Floats, Floats, float]) -> None:
-    """Write the tool pose, finger values and quality of a successful grasp into its row."""
+    """Write the tool pose, finger values and quality of a successful grasp into its table row."""
     contacts, values, T_world_robot, mindist = answer
     robot, manip, target, columns = model.robot, model.manip, model.target, model.graspindices
     T_target_world = np.linalg.inv(target.GetTransform())
@@ -292,14 +292,14 @@ def generate(
 
 
 class _GraspFilter:
-    """Filter that calls the user's function once for each grasp in the result files (shards) of the sweep."""
+    """Calls the user's function once for each grasp in the result files (shards) of a sweep."""
 
     def __init__(self, check: Check | None, parts: Path) -> None:
         self._check, self._parts = check, parts
         self.reasons: dict[Path, NDArray[Any]] = {}
 
     def update(self) -> None:
-        """Call the user's function with the valid grasps in result files written since the last call."""
+        """Apply the user's function to the valid grasps in result files written since the last call."""
         if self._check is None or not (self._parts / MANIFEST).exists():
             return
         for path in Sweep.open(self._parts).files:
@@ -360,7 +360,7 @@ def forget(parts: Path) -> None:
 
 @contextmanager
 def _copy(model: GraspUse, alone: bool) -> Generator[Environment]:
-    """Yield a copy of the environment; if ``alone``, it contains only the robot and the target."""
+    """Yield a copy of the environment; if ``alone``, only with the robot and the target."""
     env: Environment = pickle.loads(pickle.dumps(model.env))
     try:
         names = {model.robot.GetName(), model.target.GetName()}
@@ -375,7 +375,7 @@ def _copy(model: GraspUse, alone: bool) -> Generator[Environment]:
 
 
 def _writable(parts: Path) -> Path:
-    """Return a folder that can be written: the given one, or a temporary one."""
+    """Return ``parts`` after creating it, or a temporary folder if it is not writable."""
     try:
         parts.mkdir(parents=True, exist_ok=True)
     except OSError as error:
