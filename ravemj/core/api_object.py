@@ -12,7 +12,7 @@ Thing = TypeVar("Thing")
 
 
 class _ApiType(type):
-    """Metaclass that makes ``dir`` of a class equal to ``dir`` of its objects, since IPython completes with both."""
+    """Metaclass that makes ``dir`` of a class equal to ``dir`` of its instances, since IPython completes with both."""
 
     def __dir__(cls) -> list[str]:
         return _listed(cls, super().__dir__())
@@ -28,7 +28,7 @@ class ApiObject(metaclass=_ApiType):
     _internal: ClassVar[tuple[str, ...]] = ()
 
     _often_called: ClassVar[tuple[str, ...]] = ()
-    """Performance-critical methods, and ``__init__`` of classes with many objects.
+    """Names of performance-critical methods, and ``__init__`` for classes with many instances.
 
     They check their arguments themselves, since a wrapper would cost 0.1 µs per call.
     """
@@ -68,5 +68,5 @@ def _listed(kind: type, names: Iterable[str]) -> list[str]:
 
 
 def _all_of(kind: type, attribute: str) -> set[str]:
-    """Return the names in an attribute of a class and of its bases."""
+    """Return the union of an attribute's names over a class and its bases."""
     return {name for base in kind.__mro__ for name in vars(base).get(attribute, ())}

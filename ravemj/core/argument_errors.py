@@ -23,7 +23,7 @@ from ravemj.errors import ArgumentError, RavemjError
 
 _PYTHONS_ERRORS = (TypeError, AttributeError, ValueError, LookupError, ArithmeticError, MemoryError)
 _OURS = (*map(os.path.dirname, (os.path.dirname(__file__), os.__file__, np.__file__)), "<frozen", "<__array_function__")
-"""Path prefixes of the code of ravemj, Python and numpy; errors from other code, such as a user's, are not changed.
+"""Path prefixes of the code of ravemj, Python and numpy; errors raised elsewhere, as in user code, are not changed.
 
 File names of numpy's compiled code end in ``.pyx``.
 """
@@ -66,7 +66,7 @@ _KINDS: Mapping[str, tuple[str, Callable[[object], bool]]] = MappingProxyType(
         **dict.fromkeys(("bool", "Any", "object", "_empty"), ("anything", _is_any(object))),
     }
 )
-"""Name in messages, and type check, of each type in annotations."""
+"""Description for messages, and type check, of each type name in annotations."""
 
 
 @cache  # so that a function with two names stays one
@@ -100,7 +100,7 @@ def _is_scalar_array(value: object) -> bool:
 
 
 def _plain(value: object) -> object:
-    """Return the number of an array without dimensions; other values as they are."""
+    """Return the number in a zero-dimensional array; return other values unchanged."""
     return cast("np.ndarray[Any, Any]", value).item() if _is_scalar_array(value) else value
 
 
@@ -118,7 +118,7 @@ def explain_methods(kind: type, skipped: Collection[str] = ()) -> None:
 
 
 def _takes(method: FunctionType) -> bool:
-    """Return whether a method has arguments besides ``self``."""
+    """Return whether a method has parameters besides ``self``."""
     code = method.__code__
     return code.co_argcount + code.co_kwonlyargcount > 1 or bool(code.co_flags & (CO_VARARGS | CO_VARKEYWORDS))
 
@@ -126,7 +126,7 @@ def _takes(method: FunctionType) -> bool:
 def _clearer(
     error: Exception, function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]
 ) -> Exception | None:
-    """Return an error that names the wrong argument; None if there is none, or if the error names it."""
+    """Return an error that names the wrong argument; None if none is wrong, or if ``error`` already names it."""
     if isinstance(error, ArgumentError):
         known = {_caller(function, args), *signature(function).parameters} - {"self", "cls"}
         wrong = None if _is_in(known, error) else _wrong_type(function, args, kwargs)
@@ -136,7 +136,11 @@ def _clearer(
 
 
 def _wrong_type(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[str, str] | None:
-    """Return the names of the function and of its first argument of a wrong type, and its description; else None."""
+    """Find the first argument of a wrong type.
+
+    Returns:
+        Function and argument name, and a description of the mismatch; None if all types are right.
+    """
     try:
         given = signature(function).bind(*args, **kwargs)
     except TypeError:  # its message names the argument that is missing or unknown
@@ -158,7 +162,7 @@ def _wrong_type(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str,
 
 
 def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Exception | None:
-    """Return an error of Python extended by the given arguments; None if it names one, or comes from user code."""
+    """Return a copy of an error with the arguments' values; None if it names an argument or comes from user code."""
     files = [frame.f_code.co_filename for frame, _ in walk_tb(error.__traceback__)]
     if isinstance(error, RavemjError) or not all(file.startswith(_OURS) or file.endswith(".pyx") for file in files):
         return None
@@ -175,12 +179,12 @@ def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwar
 
 
 def _is_in(names: Iterable[str], error: Exception) -> bool:
-    """Return whether the message of an error has one of the names as a word."""
+    """Return whether the message of an error contains one of the names as a word."""
     return any(re.search(rf"\b{name}\b", str(error)) for name in names)
 
 
 def _caller(function: FunctionType, args: tuple[Any, ...]) -> str:
-    """Return the name of a function, or of the class whose constructor it is."""
+    """Return the function's name for messages; for a constructor the class's."""
     return type(args[0]).__name__ if function.__name__ == "__init__" else function.__name__
 
 
@@ -189,7 +193,7 @@ def _with_article(kind: str) -> str:
 
 
 def _kinds(annotation: object) -> list[str]:
-    """Return the names of the types in an annotation, without type parameters."""
+    """Return the type names in an annotation, without type parameters."""
     text = annotation if isinstance(annotation, str) else formatannotation(annotation)
     while "[" in text:
         text = re.sub(r"\[[^\[\]]*\]", "", text)

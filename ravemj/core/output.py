@@ -117,7 +117,7 @@ def added_files(path: AnyPath) -> Generator[Path]:
 
 
 def _move_all(source: Path, target: Path) -> None:
-    """Move the files of a folder into another one, all or none."""
+    """Move the files of a folder into another folder, all or none."""
     is_new = not target.exists()
     target.mkdir(exist_ok=True)
     made: list[Path] = []
@@ -143,7 +143,7 @@ def output_error(path: AnyPath, error: Exception) -> OutputError:
 
 @contextmanager
 def _output_errors(path: AnyPath, kinds: tuple[type[Exception], ...] = (OSError, ValueError)) -> Generator[None]:
-    """Convert errors of some types to ``OutputError``; by default also the ``ValueError`` of paths with null bytes."""
+    """Convert errors in the block to ``OutputError``; ``ValueError`` is a default for paths with null bytes."""
     try:
         yield
     except (OutputError, BrokenPipeError):  # a pipe is not the target
@@ -153,12 +153,12 @@ def _output_errors(path: AnyPath, kinds: tuple[type[Exception], ...] = (OSError,
 
 
 def _real(path: AnyPath) -> Path:
-    """Return the absolute path with symbolic links resolved, so that their targets are replaced."""
+    """Return the absolute path with symbolic links resolved, so that writing replaces their targets."""
     return Path(os.path.realpath(path))
 
 
 def _foreign_entries(folder: Path, patterns: Collection[str]) -> Iterator[str]:
-    """Yield the entries of a folder that match none of the patterns, directly or in a subfolder."""
+    """Yield the entries of a folder and its subfolders that match none of the patterns."""
     folders = {pattern.rpartition("/")[0] for pattern in patterns}
     for entry in folder.rglob("*"):
         name = entry.relative_to(folder).as_posix()
@@ -173,7 +173,7 @@ def _foreign_entries(folder: Path, patterns: Collection[str]) -> Iterator[str]:
 
 @contextmanager
 def _temporary(path: AnyPath) -> Generator[Path]:
-    """Yield a temporary path beside a target; a file or folder left there is removed at the end."""
+    """Yield a temporary path in the target's folder; remove a file or folder left there at the end."""
     temporary = _real(path).with_name(f".ravemj-{_realm()}-{os.getpid()}-{os.urandom(4).hex()}.tmp")
     _remove_left_over(temporary.parent)
     remove = in_this_process(lambda: _remove(temporary))
@@ -198,7 +198,7 @@ def temporary_folder() -> Generator[str]:
 
 @cache
 def _realm() -> str:
-    """Return eight hexadecimal digits for the namespace of process ids: the machine, and the container on it."""
+    """Return eight hexadecimal digits that identify the namespace of process ids: the machine and its container."""
     import hashlib  # noqa: PLC0415 - slow to import
 
     try:
@@ -209,7 +209,7 @@ def _realm() -> str:
 
 
 def _remove_left_over(folder: Path) -> None:
-    """Remove temporary files and folders of the user's killed processes."""
+    """Remove temporary files and folders that killed processes of this user left behind."""
     if os.name != "posix":  # there is no harmless way to ask for a process
         return
     for path in folder.glob(f".ravemj-{_realm()}-*"):
