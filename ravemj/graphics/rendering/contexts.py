@@ -42,10 +42,10 @@ _BY_ENVIRONMENT = {
     **{name: "glfw" for name in ("glx", "wgl", "cgl")},
 }
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "software", "swiftshader", "basic render")
-"""Substrings of the names of software OpenGL drivers."""
+"""Substrings in renderer names of software OpenGL drivers."""
 
 _DEVICE = "MUJOCO_EGL_DEVICE_ID"
-"""Environment variable with the number of the GPU."""
+"""Environment variable for the index of the GPU."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -53,7 +53,7 @@ _Made = TypeVar("_Made")
 
 
 class _GLContext(Protocol):
-    """Common interface of the contexts of mujoco.egl, mujoco.osmesa and mujoco.glfw."""
+    """Common interface of the context classes in mujoco.egl, mujoco.osmesa and mujoco.glfw."""
 
     def __init__(self, max_width: int, max_height: int) -> None: ...
     def as_current(self) -> contextlib.AbstractContextManager[None]: ...
@@ -219,7 +219,7 @@ def _close_all() -> None:
 
 @in_child
 def _disown_all() -> None:
-    """Disown the contexts in a forked child: freeing them, even at exit, would need threads of the parent."""
+    """Abandon the OpenGL contexts in a forked child: freeing them, even at exit, would need threads of the parent."""
     global _is_fork, _lock
     _is_fork, _lock = _is_fork or bool(_used), threading.RLock()
     for thing in (*_open, *_not_freed):
@@ -247,7 +247,7 @@ def _check_glfw() -> None:
 
 
 def _make_glfw(context_class: type[_GLContext]) -> _GLContext:
-    """Create an invisible window; GLFW reports errors as Python warnings and continues."""
+    """Create the context of an invisible GLFW window; raise if it fails, since GLFW only warns."""
     glfw = importlib.import_module("glfw")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

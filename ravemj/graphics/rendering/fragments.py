@@ -17,16 +17,16 @@ from ravemj.graphics.rendering.lights import Lights
 from ravemj.model.drawing import PrimitiveBatch, Primitives
 
 _AT_ONCE = 1 << 20
-"""Maximum number of (primitive, pixel) pairs tested at once."""
+"""Maximum number of (primitive, pixel) pairs that are tested at once, to limit memory."""
 
 _PIECE = 16.0
-"""Length of the segments into which lines are divided [pixels], so that bounding rectangles stay small."""
+"""Length of line segments [px]; long lines are divided so that the bounding rectangles stay small."""
 
 _NEAREST = 1e-6
-"""Near clipping depth of lines [m]."""
+"""Near clipping depth of drawings [m]."""
 
 _SLACK = 1e-9
-"""Tolerance of barycentric coordinates, so that there are no gaps between adjacent triangles."""
+"""Tolerance of barycentric coordinates that avoids gaps between adjacent triangles."""
 
 
 class Fragments(NamedTuple):
@@ -121,7 +121,7 @@ class Raster:
             yield _flat(ray[hit], depth, batch.rgba[owner])
 
     def _pieces(self, start: Floats, along: Floats, half: Floats) -> tuple[Ints, Floats, Floats]:
-        """Cut visible lines on the screen into segments; return the line index, start and end (0..1) of each."""
+        """Cut the visible parts of screen lines into segments; return line index, start and end (0..1) of each."""
         with np.errstate(divide="ignore", invalid="ignore"):
             crossings = np.stack([-half[:, None] - start, self.size + half[:, None] - start]) / along
         first = np.nanmax(np.minimum(*crossings), axis=1, initial=0)
@@ -148,7 +148,7 @@ class Raster:
             yield self._lit(ray[hit], depth, direction[hit], normals, batch.rgba[sphere])
 
     def _around_spheres(self, center: Floats, radius: Floats) -> tuple[Floats, Floats]:
-        """Return the bounding rectangles on the screen; the whole screen for spheres cut by the camera plane."""
+        """Return bounding rectangles of spheres on the screen; the whole screen for those cut by the camera plane."""
         x_or_y, depth, r = center[:, :2], center[:, 2:], radius[:, None]
         in_front = (depth > r)[:, 0]
         low, high = _whole_screen(len(radius))
@@ -177,7 +177,7 @@ class Raster:
             yield self._lit(ray[hit], depth[hit], direction[hit], normals[owner[hit]], batch.rgba[owner[hit]])
 
     def _around_triangles(self, corners: Floats) -> tuple[Floats, Floats]:
-        """Return the bounding rectangles on the screen; the whole screen for triangles cut by the camera plane."""
+        """Return bounding rectangles of triangles on the screen; the whole screen for those cut by the camera plane."""
         in_front = (corners[:, :, 2] > _NEAREST).all(axis=1)
         low, high = _whole_screen(len(corners))
         on_screen = self._project(corners[in_front])
@@ -189,12 +189,12 @@ class Raster:
         return self.camera.pinhole(*self.size)
 
     def _project(self, points: Floats) -> Floats:
-        """Project points in the camera frame, shape (..., 3), to the screen, shape (..., 2) [pixels]."""
+        """Project points in the camera frame, shape (..., 3), to the screen [px], shape (..., 2)."""
         focal, principal = np.array(self._pinhole).reshape(2, 2)
         return points[..., :2] / points[..., 2:] * focal + principal
 
     def _directions(self, at: Floats) -> Floats:
-        """Return the rays through points of the screen, (N, 2), in the camera frame with depth 1, (N, 3)."""
+        """Return rays through screen points, shape (N, 2), as camera-frame vectors of depth 1, shape (N, 3)."""
         focal, principal = np.array(self._pinhole).reshape(2, 2)
         return np.column_stack([(at - principal) / focal, np.ones(len(at))])
 
@@ -205,9 +205,9 @@ class Raster:
         return _flat(ray, depth, np.column_stack([np.minimum(rgba[:, :3] * light, 1), rgba[:, 3]]))
 
     def _pairs(self, low: Floats, high: Floats) -> Iterator[tuple[Ints, Ints, Floats]]:
-        """Yield, in batches, the rays through rectangles given by two corners, shape (N, 2) each.
+        """Yield, in batches, all pairs of a rectangle and a pixel in it; ``low`` and ``high`` are corners, (N, 2) [px].
 
-        A batch has rectangle indices, ray indices, and the rays' points on the screen, shape (M, 2) [pixels].
+        A batch is: rectangle indices, ray indices of the pixels, and the pixel centres, shape (M, 2) [px].
         """
         center = 0.5 + np.array(self.offset)
         first = np.ceil(np.clip(low - center, 0, self.size)).astype(int)
@@ -229,7 +229,7 @@ class Raster:
 
 
 def _whole_screen(count: int) -> tuple[Floats, Floats]:
-    """Return lower and upper bounds of ``count`` rectangles without bounds: -inf and inf, shape (count, 2) each."""
+    """Return bounds of ``count`` infinite rectangles: -inf and inf, shape (count, 2) each."""
     return np.full((count, 2), -np.inf), np.full((count, 2), np.inf)
 
 
@@ -242,14 +242,14 @@ def _flat(ray: Ints, depth: Floats, rgba: Floats) -> Fragments:
 
 
 def _numbered(counts: Ints) -> tuple[Ints, Ints]:
-    """Return each index i ``counts[i]`` times, and for each a running number from 0 to ``counts[i] - 1``."""
+    """Return each index i repeated ``counts[i]`` times, and for each repetition its number, from 0."""
     index = np.repeat(np.arange(len(counts)), counts)
     first = np.cumsum(counts) - counts
     return index, np.arange(len(index)) - first[index]
 
 
 def _cut_off(ends: Floats) -> Floats:
-    """Clip lines, shape (N, 2, 3), at the near depth."""
+    """Clip lines in the camera frame, shape (N, 2, 3), at the near depth."""
     depth = ends[:, :, 2]
     with np.errstate(divide="ignore", invalid="ignore"):
         part = (_NEAREST - depth[:, 0]) / (depth[:, 1] - depth[:, 0])

@@ -27,13 +27,13 @@ from ravemj.model.drawing import NOTHING, Primitives
 from ravemj.model.look import WHITE
 
 _BAND = 1 << 16
-"""Number of rays cast at once: a few megabytes, independent of the size of the picture."""
+"""Number of rays cast at once, which needs a few megabytes whatever the picture's size."""
 
 _LAYERS = 6
-"""Maximum number of transparent surfaces along a ray."""
+"""Maximum number of transparent surfaces that a ray passes through."""
 
 _EDGE = 12
-"""Difference between neighbouring pixels (0..255) above which an edge is antialiased."""
+"""Colour difference between adjacent pixels (0..255) above which both are antialiased."""
 
 _SUBPIXELS = np.array([(-0.125, -0.375), (0.375, -0.125), (0.125, 0.375), (-0.375, 0.125)])
 
@@ -47,7 +47,7 @@ _TWO_WALLS = (
     mujoco.mjtGeom.mjGEOM_CYLINDER,
     mujoco.mjtGeom.mjGEOM_BOX,
 )
-"""Convex shapes, which a ray enters and leaves once; a ray that hits a back face started inside."""
+"""Convex geom types. A ray that hits the back face of one started inside it."""
 
 
 class RayRenderer(Renderer):
@@ -113,7 +113,7 @@ class RayRenderer(Renderer):
         self._closed = True
 
     def _scene(self, data: mujoco.MjData, camera: Camera, look: Look | None = None) -> "_RayScene":
-        """Prepare a copy of the model without hidden geoms, which other threads do not change."""
+        """Return the state to render, with a private copy of the model in which hidden geoms are excluded."""
         if self._closed:
             raise RenderingError("this renderer is closed")
         check_data(self._model, data)
@@ -141,7 +141,7 @@ class RayRenderer(Renderer):
         camera: Camera,
         primitives: Primitives,
     ) -> None:
-        """Replace pixels that differ from a neighbour by the mean of four rays."""
+        """Antialias: replace pixels that differ from a neighbour by the mean of four rays."""
         rows, columns = np.nonzero(_edges(picture))
         ray_of_pixel = np.full(picture.shape[:2], -1)
         ray_of_pixel[rows, columns] = np.arange(rows.size)
@@ -159,7 +159,7 @@ class RayRenderer(Renderer):
 
 @dataclass
 class _RayScene:
-    """One state of a model, seen from one camera position."""
+    """State of a model, seen from one camera position."""
 
     model: mujoco.MjModel  # its geom groups select the visible geoms
     data: mujoco.MjData
@@ -169,7 +169,13 @@ class _RayScene:
     backdrop: Backdrop
 
     def colors(self, rays: Floats, drawn: Fragments, layers: int = _LAYERS) -> Floats:
-        """Return the unrounded colours in 0..255, shape (N, 3), seen along rays in the world, shape (N, 3)."""
+        """Return unrounded colours in 0..255, shape (N, 3), along rays in the world frame, shape (N, 3).
+
+        Args:
+            rays: Directions of the rays from the camera, with depth 1.
+            drawn: Fragments of drawings along the rays.
+            layers: Number of transparent surfaces that a ray may still pass through.
+        """
         colors = self.backdrop.colours(rays)
         geom_ids, depth, normals = self.cast(rays)
         hit = np.flatnonzero(geom_ids >= 0)
@@ -191,9 +197,9 @@ class _RayScene:
         return colors
 
     def cast(self, rays: Floats) -> tuple[NDArray[np.int32], Floats, Floats]:
-        """Return geom ids (-1: none), depths and outer unit normals (N, 3) of the first hits of rays, shape (N, 3).
+        """Return geom ids (-1: none), depths and outward unit normals (N, 3) of the first hits of rays, shape (N, 3).
 
-        Like OpenGL, it ignores shapes seen from inside. Meshes are visible from both sides.
+        As in OpenGL, a convex geom that contains the camera is invisible. Meshes are visible from both sides.
         """
         count = len(rays)
         geom_ids = np.empty(count, dtype=np.int32)
@@ -213,7 +219,7 @@ class _RayScene:
         return two_walls[geom_ids]
 
     def _opacity(self, geom_ids: NDArray[np.int32]) -> Floats:
-        """Return the effective opacity, since MuJoCo draws front faces twice."""
+        """Return the opacity of geoms as MuJoCo's OpenGL shows it, which draws both walls of convex geoms."""
         walls = 1 + self._has_two_walls(geom_ids)
         return 1 - (1 - self.rgba[geom_ids, 3]) ** walls
 
@@ -228,7 +234,7 @@ class _RayScene:
 
 
 def _edges(picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    """Return a mask, shape (H, W), of the pixels that differ from an adjacent pixel in their row or column."""
+    """Return a mask, shape (H, W), of the pixels that differ by more than ``_EDGE`` from an adjacent one."""
     edges = np.zeros(picture.shape[:2], dtype=np.bool_)
     for first, second in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
         pixel, other = picture[first], picture[second]

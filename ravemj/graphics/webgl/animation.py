@@ -22,10 +22,10 @@ from ravemj.graphics.webgl.surfaces import surfaces
 from ravemj.model.drawing import NOTHING, Primitives
 
 _HEIGHT = 480
-"""Height of a page in a notebook [pixels]."""
+"""Height of an animation in a notebook [px]."""
 
 _STILL = 1e-9
-"""Movement below which bodies count as static [m, and components of a unit quaternion]."""
+"""Movement below which a body counts as static [m, or component of a unit quaternion]."""
 
 
 class Recording(NamedTuple):
@@ -78,7 +78,7 @@ class Animation(NamedTuple):
         return Path(path)
 
     def _repr_html_(self) -> str:
-        """Return the notebook display."""
+        """Return HTML that shows the animation in a notebook."""
         return (
             f'<iframe srcdoc="{html.escape(self.html)}" title="motion" allow="fullscreen" '
             f'style="width: 100%; height: {_HEIGHT}px; border: 0"></iframe>'
@@ -141,7 +141,7 @@ def _pack_recording(package: Package, recording: Recording) -> None:
 
 
 def _continuous(rotations: Floats) -> Floats:
-    """Choose the signs of quaternions, shape (frames, bodies, 4), so that each is nearest to the previous one."""
+    """Choose the signs of quaternions, shape (frames, bodies, 4), so that they change least between frames."""
     turns = np.sign(np.einsum("fbi,fbi->fb", rotations[1:], rotations[:-1]))
     signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=0)
     return np.concatenate([rotations[:1], rotations[1:] * signs[:, :, None]])

@@ -19,13 +19,13 @@ _SLICES, _STACKS = 40, 20
 """Facets around and along round shapes."""
 
 _SHARP = 0.8
-"""Cosine of the angle between vertex and face normal above which MuJoCo shades smoothly."""
+"""Cosine of the angle between vertex and face normal above which MuJoCo shades a corner smoothly."""
 
 _PLANE = 1000.0
-"""Half the side of an infinite plane [m]."""
+"""Half the side [m] of the square that represents an infinite plane."""
 
 _TWO_TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)
-"""Triangles of a square, as indices of its corners."""
+"""Two triangles that form a square, as indices of its corners."""
 
 
 class TriangleMesh(NamedTuple):
@@ -103,7 +103,7 @@ def _shared(
 
 
 def _mesh_of_model(model: mujoco.MjModel, number: int) -> TriangleMesh:
-    """Return a mesh as MuJoCo draws it; vertices with several normals are duplicated."""
+    """Return a mesh as MuJoCo shades it; vertices with several normals are duplicated."""
     first, count = int(model.mesh_faceadr[number]), int(model.mesh_facenum[number])
     vertices = model.mesh_face[first : first + count].astype(np.int64)
     towards = model.mesh_facenormal[first : first + count].astype(np.int64)
@@ -122,7 +122,7 @@ def _mesh_of_model(model: mujoco.MjModel, number: int) -> TriangleMesh:
 
 
 def _has_hull(model: mujoco.MjModel, geom: int) -> bool:
-    """Return whether a geom has a convex hull to draw."""
+    """Return whether a geom is a colliding mesh, whose convex hull can be drawn."""
     data = int(model.geom_dataid[geom])
     is_mesh = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
     collides = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
@@ -130,7 +130,7 @@ def _has_hull(model: mujoco.MjModel, geom: int) -> bool:
 
 
 def _hull(model: mujoco.MjModel, number: int) -> TriangleMesh:
-    """Return the convex hull of a mesh, with flat faces."""
+    """Return the convex hull of a mesh as triangles with flat shading."""
     graph = model.mesh_graph[int(model.mesh_graphadr[number]) :]
     vertices, faces = int(graph[0]), int(graph[1])
     start = 2 + 3 * vertices + 3 * faces  # behind the numbers and edges of the vertices
@@ -175,7 +175,7 @@ def _cylinder() -> TriangleMesh:
 
 
 def _revolved(profile: Floats, normals: Floats) -> TriangleMesh:
-    """Revolve a profile about z, from top to bottom; its rows are distance from the axis and height."""
+    """Return the surface of revolution about z of a profile: rows (distance from z, height), from top to bottom."""
     turn = np.linspace(0, 2 * math.pi, _SLICES + 1)
     around = np.stack([np.cos(turn), np.sin(turn)], axis=1)
 
