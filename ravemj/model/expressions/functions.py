@@ -39,7 +39,7 @@ def real_roots(*coefficients: float) -> tuple[float, ...]:
 
 
 def _polished(coefficients: np.ndarray[tuple[int], np.dtype[np.float64]], roots: object) -> list[float]:
-    """Refine roots by two Newton steps, since the eigenvalues in ``np.roots`` are less accurate."""
+    """Refine real roots by two Newton steps, since the eigenvalues of ``np.roots`` are less accurate."""
     slope = np.polyder(coefficients)
     distinct: list[float] = []
     for root in np.asarray(roots, dtype=np.float64).tolist():
@@ -191,12 +191,12 @@ def _binary(scalar: Callable[[float, float], float], array: Callable[[Floats, Fl
 
 
 def _test(scalar: Callable[[float, float], bool], array: Callable[[Floats, Floats], Bools]) -> Function:
-    """Make an operator whose result is 1 or 0."""
+    """Create a binary operator whose result is 1 or 0."""
     return _binary(lambda x, y: 1.0 if scalar(x, y) else 0.0, lambda x, y: array(x, y).astype(np.float64))
 
 
 def _inverse(scalar: Callable[[float], float], array: Callable[[Floats], Floats]) -> Function:
-    """Make the reciprocal of a function."""
+    """Create the reciprocal 1 / f of a function f."""
     return _unary(lambda x: _divide(1.0, scalar(x)), lambda x: _divide_arrays(np.ones_like(x), array(x)))
 
 
@@ -213,12 +213,12 @@ def _if_arrays(condition: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def _several(arity: int, roots: Roots, most_roots: int) -> Function:
-    """Make a multivalued function, whose scalar and array forms return the first value."""
+    """Create a multivalued function; its scalar and array forms return the first value."""
     return replace(_root(arity, roots, 0), roots=roots, most_roots=most_roots)
 
 
 def _root(arity: int, roots: Roots, index: int) -> Function:
-    """Make a function that returns the root number ``index`` of its arguments, or nan if there are fewer roots."""
+    """Create a function that returns the value ``index`` of ``roots``, or nan if there are fewer."""
 
     def root(*arguments: float) -> float:
         values = roots(*arguments)

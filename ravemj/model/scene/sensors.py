@@ -15,7 +15,7 @@ MOST_RAYS = 1_000_000
 """Maximum number of rays per measurement; a larger number indicates a wrong unit."""
 
 _WIDEST = 16_384
-"""Maximum number of pixels along a side of an image; OpenGL's limit."""
+"""Maximum number of pixels along a side of an image, a limit of OpenGL."""
 
 SENSOR_COLOR: Vec3 = (0.5, 0.5, 1.0)
 """Default colour of a sensor in viewers."""
@@ -231,7 +231,7 @@ class SensorKind(NamedTuple):
 _SPELLINGS: Mapping[str, str] = MappingProxyType(
     {"baselaser1d": "baselaser2d", "baseflashlaser": "baseflashlidar3d", "baseencoder": "basejointencoder"}
 )
-"""Names that only COLLADA uses, without underscores."""
+"""Sensor type names that only COLLADA uses, and their canonical names; lower case without underscores."""
 
 SENSOR_KINDS: Mapping[str, SensorKind] = MappingProxyType(
     {
