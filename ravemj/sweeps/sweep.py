@@ -33,11 +33,11 @@ Model = str | os.PathLike[str] | Environment | Robot
 Items = ArrayLike | str | os.PathLike[str]
 
 _SECONDS = 20.0
-"""Target duration of a shard [s], unless the shard would be too large or shards too few."""
+"""Target duration of a shard [s], unless the shard would be too large or there would be too few shards."""
 _BYTES = 100e6
 """Maximum size of a shard [bytes]."""
 _EACH = 4
-"""Minimum number of shards per process, so that all processes end at about the same time."""
+"""Minimum number of shards per process, so that all processes finish at about the same time."""
 
 
 def sweep(  # noqa: PLR0913 - keyword arguments
@@ -131,7 +131,7 @@ def sweep(  # noqa: PLR0913 - keyword arguments
 
 
 class _SweepInputs(NamedTuple):
-    """All inputs of the results of a sweep, and its folder."""
+    """Everything that determines the results of a sweep."""
 
     first: ShardTask  # all items
     job: Job
@@ -169,7 +169,7 @@ def versions() -> dict[str, str]:
 
 
 def _plain(value: object) -> object:
-    """Convert an option to JSON data; a function to its name and the digest of its source."""
+    """Convert an option to JSON data; of a function, name and source digest."""
     if callable(value):
         return f"{value.__module__}:{value.__qualname__} {source_digest(value)}"
     return json.loads(json.dumps(np.asarray(value).tolist()))
@@ -180,7 +180,7 @@ def _choices(env: Environment) -> list[object]:
 
 
 def _environment(model: Model) -> tuple[Environment, Robot | None]:
-    """Return the environment of a model, and the robot if ``model`` is one."""
+    """Return the environment of a model, and the robot if the model is a ``Robot``; load the model if it is a path."""
     if isinstance(model, Robot):
         return model.GetEnv(), model
     if isinstance(model, Environment):
@@ -217,7 +217,7 @@ def _job(env: Environment, robot: Robot | None, what: object, manip: str | None,
 
 
 def _check_sendable(job: Job, executor: int | Executor | None) -> None:
-    """Check that processes can import a user's function."""
+    """Raise if worker processes cannot import a user's function."""
     if isinstance(job.what, str) or not isinstance(executor, int | ProcessPoolExecutor):
         return
     main = sys.modules["__main__"]
@@ -250,7 +250,7 @@ def _plan(env: Environment, job: Job, items: Items, seed: int, block: int | None
 
 
 def _items(items: Items) -> tuple[NDArray[Any] | None, int]:
-    """Return the items (None if they are to be drawn) and their number."""
+    """Return the items and their number; the items are None if a number is given and they will be drawn."""
     if isinstance(items, str | os.PathLike):
         items = _items_of_file(os.fspath(items))
     array = np.asarray(items)
@@ -275,7 +275,10 @@ def _items_of_file(path: str) -> NDArray[Any]:
 
 
 def _shard_size(plan: _SweepInputs, folder: Path, shard: int | None, workers: int) -> int:
-    """Return the number of items per shard: as given, as in the folder, or estimated from a first block."""
+    """Return the number of items per shard: ``shard``, else that of the folder's manifest, else an estimate.
+
+    The estimate comes from the computing time of a first block. For a user's function, it is a multiple of the block.
+    """
     task, is_function = plan.first, callable(plan.job.what)
     if shard is None:
         before = read_manifest(folder)
@@ -301,7 +304,7 @@ def _suggested(task: ShardTask, workers: int, least: int) -> int:
 
 
 def _is_done(path: Path, *, check: bool) -> bool:
-    """Return whether a shard is finished; with ``check``, remove a damaged file."""
+    """Return whether a shard's file exists; if ``check``, remove a damaged file and return False."""
     if not path.exists():
         return False
     if check and not is_sound(path):
