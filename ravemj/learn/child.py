@@ -20,10 +20,10 @@ from ravemj.learn.mistakes import recognized
 Status: TypeAlias = Literal["solved", "wrong", "error", "untouched"]
 
 _WIDTH = 200
-"""Maximum length of the text of an answer."""
+"""Maximum length of an answer as text."""
 
 _MEMORY = 4 << 30
-"""Memory limit of a process that runs students' code [bytes]."""
+"""Memory limit of a process that runs a student's code [bytes]."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -87,7 +87,7 @@ def check_file(exercise: Path, check: Check, seed: int) -> Verdict:
 
 
 def _copied(arguments: Arguments) -> Arguments:
-    """Return arguments with copied arrays, which a function may change."""
+    """Copy the arrays among arguments, since a student's function may change them."""
     return tuple(copy.copy(argument) if hasattr(argument, "dtype") else argument for argument in arguments)
 
 
@@ -137,7 +137,7 @@ def load_check(path: Path) -> Check:
 
 
 class _RefusalError(Exception):
-    """A file that cannot be checked: status and message of its verdict."""
+    """Raised for a file that cannot be checked; contains status and message of the verdict."""
 
 
 def student_function(path: Path, check: Check) -> Function:
@@ -163,7 +163,7 @@ def student_function(path: Path, check: Check) -> Function:
 
 
 def _defined(path: Path, text: str, function: str) -> dict[str, object]:
-    """Return the names that a student's file defines."""
+    """Execute a student's file and return its global names; refuse it if ``function`` still has a placeholder."""
     tree = ast.parse(text, str(path))
     if _has_hole(tree, function):
         message = f"{function} still has ... in it: put your code in its place"
@@ -174,7 +174,7 @@ def _defined(path: Path, text: str, function: str) -> dict[str, object]:
 
 
 def _has_hole(tree: ast.Module, name: str) -> bool:
-    """Return whether a function still contains the placeholder ``...``, alone or as a value."""
+    """Return whether the function ``name`` still contains the placeholder ``...`` as a statement or value."""
     functions = (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) and node.name == name)
     values = (
         node
