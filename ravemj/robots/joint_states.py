@@ -106,7 +106,7 @@ class JointStates:
 
 
 def _trouble(names: object, values: object) -> str:
-    """Return the reason for skipping a message, or an empty text."""
+    """Return the reason to skip a message with these names and values; empty if it is valid."""
     if not isinstance(names, list) or not isinstance(values, list):
         return "it has no lists of names and values"
     texts, numbers = cast("list[object]", names), cast("list[object]", values)
@@ -185,7 +185,7 @@ def follow_rosbridge(url: str, topic: str, period: float, states: JointStates, s
 
 
 def _receive(receive: Callable[[float], str | bytes], topic: str, states: JointStates, say: Say) -> None:
-    """Receive messages until the connection is lost."""
+    """Receive joint state messages until the connection is lost."""
     is_silent = False
     while True:
         try:

@@ -179,10 +179,10 @@ class Stream:
             raise RavemjError(f"stopped: {self._reason}")
 
     def _check_feedback(self, wanted: Floats, begin: float) -> None:
-        """Check the measured state.
+        """Compare the measured joint values with the motion.
 
         Raises:
-            RavemjError: it is too old, or too far from the motion.
+            RavemjError: The measurement is too old, or too far from the motion.
         """
         guard, rows = self.guard, self.rows
         if guard.feedback is None:
@@ -212,7 +212,7 @@ class Stream:
         self._last_sent = values
 
     def _hold(self, count: int) -> None:
-        """Send the latest values with zero velocity, once per period, until ``send`` fails."""
+        """Send the latest values ``count`` times with zero velocity, once per period; stop if ``send`` fails."""
         if self.latest is None:
             return
         begin, still = self.clock.now(), self.latest
@@ -224,7 +224,7 @@ class Stream:
                 return
 
     def _tell_rate(self) -> None:
-        """Warn if the rate was not kept."""
+        """Warn if values were sent at a lower rate than requested."""
         sent = np.array(self._sent)
         if len(sent) > 2:
             mean = float(np.diff(sent[:-1]).mean())
@@ -234,7 +234,7 @@ class Stream:
 
 
 class _SendError(Exception):
-    """An exception of the user's ``send`` function."""
+    """Wrapper of an exception in the user's ``send`` function."""
 
     def __init__(self, cause: Exception) -> None:
         super().__init__()
@@ -245,7 +245,7 @@ _running: set[Stream] = set()
 
 
 class _StopAll:
-    """Handler of Ctrl-C: it stops all streams, and calls the previous handler."""
+    """Handler of Ctrl-C that stops all streams, then calls the previous handler."""
 
     def __init__(self, previous: object) -> None:
         self._previous = previous
@@ -258,7 +258,7 @@ class _StopAll:
 
     @classmethod
     def install(cls) -> None:
-        """Install the handler; only possible in the main thread."""
+        """Install the handler; do nothing outside the main thread, where Python does not allow it."""
         previous = signal.getsignal(signal.SIGINT)
         if threading.current_thread() is threading.main_thread() and not isinstance(previous, cls):
             signal.signal(signal.SIGINT, cls(previous))
