@@ -15,13 +15,13 @@ AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 
 _TURN = 2 * math.pi
 _LOCK = 1e-7
-"""Cosine of the pitch below which roll and yaw rotate about one axis."""
+"""Cosine of the pitch below which the orientation is treated as gimbal lock."""
 
 _LENGTH, _PART, _ANGLE = 1e-9, 1e-6, 1e-6
 """Tolerances of a membership test: lengths [m], lengths relative to those involved, and angles [rad]."""
 
 _POINT_SHARE = 0.1
-"""Minimum weight of a region in a union, relative to the mean width, so that point regions are sampled, too."""
+"""Minimum weight of a region in a union, relative to the mean width, so that point regions are sampled too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +151,7 @@ class PoseSet:
         return -displacement, rates
 
     def _displaced(self, D: Floats) -> tuple[Floats, Floats]:
-        """Return the coordinates of ``D`` nearest to the bounds, and by how much they exceed the bounds."""
+        """Return the coordinates of ``D`` for which the bounds are violated least, and the signed violations."""
         if self.lean is not None:
             return self._leaned(D, self.lean)
         best, least = None, math.inf
@@ -169,7 +169,10 @@ class PoseSet:
         return np.array([*lengths, *angles]), np.array([*far, *beyond])
 
     def _triples(self, rows: list[list[float]]) -> list[list[float]]:
-        """Return the equivalent roll, pitch and yaw angles of a rotation, each near the middle of its bounds."""
+        """Return the equivalent (roll, pitch, yaw) of a rotation matrix, each angle near the middle of its bounds.
+
+        There are two, or one at gimbal lock.
+        """
         (r00, r01, _), (r10, r11, _), (r20, r21, r22) = rows
         cosine = math.hypot(r00, r10)
         pitch, rolls, pitches, yaws = math.atan2(-r20, cosine), *self._bounds[3:]
@@ -213,7 +216,7 @@ def _at_most_a_turn(lower: float, upper: float) -> tuple[float, float]:
 
 
 def _near(angle: float, lower: float, upper: float) -> float:
-    """Return an angle shifted by full turns nearest to the middle of its bounds."""
+    """Return the angle shifted by full turns to be nearest to the middle of the bounds."""
     return angle + _TURN * round(((lower + upper) / 2 - angle) / _TURN)
 
 
@@ -222,7 +225,7 @@ def _beyond(value: float, lower: float, upper: float) -> float:
 
 
 def _split(total: float, side: float, rolls: tuple[float, float], yaws: tuple[float, float]) -> tuple[float, float]:
-    """Return the roll and yaw nearest to their bounds with ``roll - side * yaw = total``, at a pitch of +-pi/2."""
+    """Return roll and yaw nearest to their bounds with roll - ``side`` * yaw = ``total``, for a pitch of +-pi/2."""
     wide, wide_yaw = rolls[1] - rolls[0], yaws[1] - yaws[0]
     first = rolls[0] - side * (yaws[1] if side > 0 else yaws[0])
     last = first + wide + wide_yaw
@@ -235,7 +238,7 @@ def _split(total: float, side: float, rolls: tuple[float, float], yaws: tuple[fl
 
 
 def _turned(angles: Floats) -> Floats:
-    """Return ``Rz(yaw) Ry(pitch) Rx(roll)``, shape (n, 3, 3)."""
+    """Return the rotations Rz(yaw) Ry(pitch) Rx(roll), shape (n, 3, 3), for rows (roll, pitch, yaw)."""
     (sr, sp, sy), (cr, cp, cy) = np.sin(angles).T, np.cos(angles).T
     rows = [
         [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
@@ -246,7 +249,7 @@ def _turned(angles: Floats) -> Floats:
 
 
 def _leaning(angles: Floats) -> Floats:
-    """Return the product of rotations by vectors (x, y, 0) and ``Rz(yaw)``, shape (n, 3, 3)."""
+    """Return the rotations exp([x, y, 0]) Rz(yaw), shape (n, 3, 3), for rows (x, y, yaw)."""
     x, y, yaw = angles.T
     angle = np.hypot(x, y)
     scale = np.where(angle > 0, angle, 1.0)
@@ -261,7 +264,7 @@ def _leaning(angles: Floats) -> Floats:
 
 
 def _angle_rates(pitch: float, yaw: float) -> Floats:
-    """Return the derivatives of roll, pitch and yaw by an angular velocity in axes of *w*, shape (3, 3)."""
+    """Return the Jacobian of (roll, pitch, yaw) by the angular velocity in the axes of *w*, shape (3, 3)."""
     cosine, sine = math.cos(pitch), math.sin(pitch)
     cosine = math.copysign(max(abs(cosine), _LOCK), cosine)
     c, s = math.cos(yaw), math.sin(yaw)
@@ -269,7 +272,7 @@ def _angle_rates(pitch: float, yaw: float) -> Floats:
 
 
 def _lean_rates(D: Floats) -> Floats:
-    """Return the derivatives of the lean (first row) and of the yaw (last row) by an angular velocity, shape (3, 3)."""
+    """Return the Jacobian of lean (first row) and yaw (last row) by the angular velocity, shape (3, 3)."""
     x, y, z = D[:3, 2].tolist()
     level = math.hypot(x, y) or 1.0
     over = max(1 + z, _LOCK)
@@ -277,7 +280,7 @@ def _lean_rates(D: Floats) -> Floats:
 
 
 def _cosine_integral(angle: float) -> float:
-    """Return the integral of |cos| from 0 to an angle."""
+    """Return the integral of |cos| from 0 to ``angle``."""
     turns = math.floor(angle / math.pi + 0.5)
     return 2 * turns + math.sin(angle - turns * math.pi)
 

@@ -17,7 +17,7 @@ _BOX_TRIANGLES = (
 )  # fmt: skip
 
 _FINEST = 10
-"""Maximum number of subdivisions of a sphere's triangles, which gives 20 million triangles."""
+"""Maximum number of subdivisions of a sphere's triangles; it gives 20 million triangles."""
 
 _GOLDEN = (1 + 5**0.5) / 2
 _ICOSAHEDRON = [
@@ -75,7 +75,7 @@ def ComputeGeodesicSphereMesh(radius: float = 1.0, level: int = 2) -> tuple[Floa
 
 
 def _faces(corners: Floats) -> list[tuple[int, int, int]]:
-    """Return the triangles of an icosahedron's adjacent vertices, counter-clockwise seen from outside."""
+    """Return an icosahedron's triangles as indices of its corners, counter-clockwise seen from outside."""
     near = corners @ corners.T > 0.4
     faces: list[tuple[int, int, int]] = []
     for a, b, c in itertools.combinations(range(len(corners)), 3):
