@@ -60,11 +60,7 @@ def choices_of(options: argparse.Namespace) -> TranslationChoices:
 
 
 def _format_of(output: str) -> str:
-    """Return the format of an output file by its suffix; MJCF for standard output and folders.
-
-    Raises:
-        OutputError: The suffix is unknown.
-    """
+    """Return an output file's format by its suffix, MJCF for standard output and folders; raise if unknown."""
     if output == TO_STANDARD_OUTPUT or is_folder(output):
         return "mjcf"
     form = format_of(output)

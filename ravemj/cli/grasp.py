@@ -105,7 +105,7 @@ def _target(env: Environment, robot: Robot, options: argparse.Namespace) -> KinB
 
 
 def _loaded(env: Environment, name: str) -> KinBody:
-    """Load the only body of a file or shipped model."""
+    """Load a file or shipped model that contains exactly one body; return this body."""
     path, before = model_file(name), env.GetBodies()
     if not os.path.exists(path):
         names = ", ".join(body.GetName() for body in before)
@@ -146,7 +146,6 @@ def _put_down(env: Environment, robot: Robot, body: KinBody) -> None:
 
 
 def _print(arm: Manipulator, target: KinBody, result: Grasps, note: str) -> None:
-    """Print the best grasps, and the number of rejected candidates by reason."""
     if result:
         title = f"Grasps of '{target.GetName()}' by '{arm.GetName()}' of '{arm.GetRobot().GetName()}', the best first"
         rows = table(title, "#>", "quality>", "epsilon>", "contacts>", "weakest", "shaken")

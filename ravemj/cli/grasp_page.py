@@ -124,7 +124,6 @@ def _copied(env: Environment, body: KinBody, number: int) -> KinBody:
 
 
 def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, number: int) -> _DrawnHand:
-    """Add a copy of the robot of which only the hand is visible, for a grasp."""
     robot = cast("Robot", RaveCreateRobot(env, ""))
     robot.Clone(arm.GetRobot(), 0)
     robot.SetName(f"{arm.GetRobot().GetName()} {number}")
@@ -145,10 +144,7 @@ def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, num
 
 
 def _arm(env: Environment, arm: Manipulator, body: KinBody, target: KinBody, grasp: Grasp) -> _DrawnArm:
-    """Add a copy of the robot that approaches a grasp of ``body``, a copy of the target.
-
-    The robot's pose relative to ``body`` is that of the original relative to the target.
-    """
+    """Add a copy of the robot that approaches ``body``, a copy of the target; their relative pose is kept."""
     T_world_target = body.GetTransform()
     robot = cast("Robot", RaveCreateRobot(env, ""))
     robot.Clone(arm.GetRobot(), 0)

@@ -67,11 +67,7 @@ def _say(text: str) -> None:
 
 
 def _source(states: JointStates, options: argparse.Namespace) -> Callable[[], None]:
-    """Return the function that receives joint states until their source ends; it runs in a thread.
-
-    Raises:
-        SourceError: The CSV file cannot be read.
-    """
+    """Return the function that receives joint states in a thread; raise if the CSV file cannot be read."""
     if options.rosbridge is not None:
         return lambda: follow_rosbridge(options.rosbridge, options.topic, _PERIOD, states, _say)
     is_input = options.csv == _STANDARD_INPUT

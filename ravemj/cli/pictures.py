@@ -75,11 +75,7 @@ def play(options: argparse.Namespace) -> int:
 
 
 def _check_length(motion: BodyMotion, fps: float) -> None:
-    """Check that the number of frames of a video is within ``_MOST_FRAMES``.
-
-    Raises:
-        ArgumentError: The motion has too many frames.
-    """
+    """Raise if a video of the motion would have more than ``_MOST_FRAMES`` frames."""
     count = number_of_frames(motion.duration, fps)
     if count > _MOST_FRAMES:
         length = f"{motion.duration:g} s at {fps:g} frames a second are {count:.3g} frames"
@@ -120,11 +116,7 @@ def _play_to_robot(options: argparse.Namespace) -> int:
 
 
 def _checked_values(option: str, values: list[float], body: KinBody) -> list[float]:
-    """Return ``values``, given by an option, after checking that there is one for each DOF.
-
-    Raises:
-        ArgumentError: The number of values is wrong.
-    """
+    """Return the joint values of an option; raise unless there is one for each DOF."""
     dof = body.GetDOF()
     if len(values) != dof:
         names = ", ".join(body.simulation_state.scene.dof_names)

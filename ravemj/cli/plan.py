@@ -78,10 +78,7 @@ def _goal(robot: Robot, arm: Manipulator | None, regions: list[Region], options:
 
 
 def _about_itself(told: str, robot: Robot, model: str) -> str:
-    """Return a hint on ``check --self`` if the message ``told`` is that the robot's start is in self-collision.
-
-    This is common without an SRDF. The hint is empty for other messages.
-    """
+    """Return a hint if the message ``told`` is that the robot's start is in self-collision, common without an SRDF."""
     if not told.startswith("start:") or told.count(f"of '{robot.GetName()}'") != 2:
         return ""
     return f"; ravemj check {model} --self lists links that always touch, and --write-srdf lets them"
@@ -96,11 +93,7 @@ def _arm(env: Environment, options: argparse.Namespace) -> Manipulator | None:
 
 
 def _values(robot: Robot, arm: Manipulator | None, options: argparse.Namespace) -> tuple[list[int], Floats]:
-    """Return the DOF indices of the moving joints, and the joint values of ``--to``, shape (1, n).
-
-    Raises:
-        ArgumentError: The number of values is neither that of the arm's DOFs nor that of all DOFs.
-    """
+    """Return the moving DOFs and the values of ``--to``, shape (1, n): of all DOFs or of the arm's, else raise."""
     every = list(range(robot.GetDOF()))
     dofs = every if arm is None else arm.GetArmIndices().tolist()
     if len(options.to) == len(every):
@@ -114,12 +107,7 @@ def _values(robot: Robot, arm: Manipulator | None, options: argparse.Namespace) 
 
 
 def _solutions(arm: Manipulator | None, pose: Sequence[float]) -> tuple[list[int], Floats]:
-    """Return the DOF indices of the arm, and its IK solutions for a pose or point, the nearest first.
-
-    Raises:
-        ArgumentError: The number of values is neither that of a pose nor that of a point.
-        RavemjError: There is no valid solution.
-    """
+    """Return the arm's DOFs and its valid IK solutions for a pose or point, nearest first; raise if there is none."""
     assert arm is not None
     if len(pose) not in {_POSE, _POINT}:
         raise ArgumentError(f"--pose: found {len(pose)}, expected x,y,z,qw,qx,qy,qz or x,y,z")
@@ -139,7 +127,6 @@ def _solutions(arm: Manipulator | None, pose: Sequence[float]) -> tuple[list[int
 
 
 def _planned(robot: Robot, arm: Manipulator | None, goal: MotionGoal, options: argparse.Namespace) -> tuple[Plan, str]:
-    """Plan a motion to the goal; return the result and a text about the search."""
     robot.SetActiveDOFs(goal.dofs)
     params = Planner.PlannerParameters()
     params.SetRobotActiveJoints(robot)
@@ -189,10 +176,7 @@ def _reasons(status: Planner.PlannerStatus) -> list[str]:
 def _outcome(
     robot: Robot, traj: Trajectory, options: argparse.Namespace
 ) -> tuple[Motion, JointTrajectory | None, Certificate | None]:
-    """Return a trajectory's motion, the points for a robot controller, and the certificate.
-
-    Points and certificate are None if the options do not request them.
-    """
+    """Return a trajectory's motion, and its points for a controller and its certificate, None if not requested."""
     motion, points = _motion(robot, traj), None
     if options.output is not None and is_joint_trajectory(options.output):
         start = None if options.start is None else start_values(options.start, robot)

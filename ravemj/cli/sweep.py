@@ -68,11 +68,7 @@ def _job_options(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _items(options: argparse.Namespace, before: Mapping[str, Any]) -> Items:
-    """Return ``--items`` or ``--count``; by default the item count of the sweep that is continued.
-
-    Raises:
-        ArgumentError: Neither is given, and there is no count from before.
-    """
+    """Return ``--items``, ``--count`` or, if a sweep is continued, its item count; raise if there is none of these."""
     given = options.items or options.count
     if given is None and before.get("items", "") is None:
         given = before["total"]
@@ -83,7 +79,7 @@ def _items(options: argparse.Namespace, before: Mapping[str, Any]) -> Items:
 
 @contextmanager
 def _executor(options: argparse.Namespace) -> Generator[int | Executor | None]:
-    """Yield the number of ``--jobs``, or None if it is 1, or the executor of ``--executor``; shut the latter down."""
+    """Yield the executor of ``--executor``, shut down at the end; by default the number of ``--jobs``, None if 1."""
     if options.executor is None:
         yield options.jobs if options.jobs > 1 else None
         return
@@ -97,11 +93,7 @@ def _executor(options: argparse.Namespace) -> Generator[int | Executor | None]:
 
 
 def _function(name: str, option: str) -> Callable[..., Any]:
-    """Import the function ``MODULE:FUNCTION``, modules in the working folder first; ``option`` is for messages.
-
-    Raises:
-        ArgumentError: The function does not exist.
-    """
+    """Import the function ``MODULE:FUNCTION``, in the working folder first; raise if there is none."""
     module, colon, attribute = name.partition(":")
     if not (module and colon and attribute):
         names = f"{', '.join(JOBS)} or MODULE:FUNCTION" if option == "WHAT" else "MODULE:FUNCTION"

@@ -81,10 +81,7 @@ def _open_window(env: Environment, robot: Robot | None, options: argparse.Namesp
 
 
 def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
-    """Set up a viewer: title, camera, selected robot, look and physics.
-
-    Without a camera in the file, the camera shows the robot, or everything, obliquely from above.
-    """
+    """Set title, camera, selection and look; by default the camera shows the robot or everything obliquely."""
     viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
     if robot is not None or env.renderer.file_camera() is None:
         center, radius = shown_sphere(env, robot)

@@ -40,13 +40,7 @@ def reach(options: argparse.Namespace) -> int:
 
 
 def _solved(robot: Robot, options: argparse.Namespace) -> WholeBodyResult:
-    """Solve whole-body IK and move the robot to the result.
-
-    With kept contacts (``--keep``), the base is free, and the centre of mass keeps its x and y.
-
-    Raises:
-        ArgumentError: A limb does not exist, or a goal is invalid.
-    """
+    """Solve and move the robot. With kept contacts, the base is free, and the centre of mass keeps its x and y."""
     kept = [name for names in options.keep for name in names]
     ik = WholeBodyIK(robot, base=bool(kept))
     for name in kept:

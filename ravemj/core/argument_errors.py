@@ -136,11 +136,7 @@ def _clearer(
 
 
 def _wrong_type(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[str, str] | None:
-    """Find the first argument of a wrong type.
-
-    Returns:
-        Function and argument name, and a description of the mismatch; None if all types are right.
-    """
+    """Return function and argument name of the first argument of a wrong type, and a description; else None."""
     try:
         given = signature(function).bind(*args, **kwargs)
     except TypeError:  # its message names the argument that is missing or unknown

@@ -10,7 +10,6 @@ class _Listed(EnumMeta):
 
     @property
     def names(cls) -> dict[str, Any]:
-        """The members by name."""
         return dict(cls.__members__)
 
     def __dir__(cls) -> list[str]:
@@ -19,7 +18,6 @@ class _Listed(EnumMeta):
 
     @property
     def values(cls) -> dict[int, Any]:
-        """The members by number."""
         return {int(member): member for member in cls.names.values()}
 
 

@@ -143,7 +143,7 @@ def output_error(path: AnyPath, error: Exception) -> OutputError:
 
 @contextmanager
 def _output_errors(path: AnyPath, kinds: tuple[type[Exception], ...] = (OSError, ValueError)) -> Generator[None]:
-    """Convert errors in the block to ``OutputError``; ``ValueError`` is a default for paths with null bytes."""
+    """Convert errors in the block to ``OutputError``; by default also ``ValueError``, as for paths with null bytes."""
     try:
         yield
     except (OutputError, BrokenPipeError):  # a pipe is not the target

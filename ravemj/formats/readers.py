@@ -62,7 +62,7 @@ def read_file(
 
 
 def _read_model(path: str, wanted: str, given: Attributes, metre: float, access: FileAccess) -> Reading:
-    """Read any text format; COLLADA whatever its suffix, since ``Environment.Save`` accepts any suffix."""
+    """Read an XML model; COLLADA is recognized with any suffix, since ``Environment.Save`` accepts any."""
     if not path.lower().endswith(collada.SUFFIXES):
         try:
             content = content_of(path)

@@ -145,11 +145,7 @@ def _external(
 
 
 def _referred(path: AnyPath, body: KinBody, reference: ExternalBody) -> KinBody:
-    """Return the body that a reader obtains from a reference.
-
-    Raises:
-        SourceError: The reference cannot be read.
-    """
+    """Return the body that a reader obtains from a reference; raise if the reference cannot be read."""
     document = collada.write(Scene((body,)), Diagnostics(), {body.name: reference})
     bodies = read_text(document.encode(), os.fspath(path), FileAccess.opened(os.fspath(path))).bodies
     if not bodies:

@@ -151,7 +151,7 @@ class PoseSet:
         return -displacement, rates
 
     def _displaced(self, D: Floats) -> tuple[Floats, Floats]:
-        """Return the coordinates of ``D`` for which the bounds are violated least, and the signed violations."""
+        """Return the coordinates of the relative pose ``D`` that exceed the bounds least, and by how much they do."""
         if self.lean is not None:
             return self._leaned(D, self.lean)
         best, least = None, math.inf
@@ -169,10 +169,7 @@ class PoseSet:
         return np.array([*lengths, *angles]), np.array([*far, *beyond])
 
     def _triples(self, rows: list[list[float]]) -> list[list[float]]:
-        """Return the equivalent (roll, pitch, yaw) of a rotation matrix, each angle near the middle of its bounds.
-
-        There are two, or one at gimbal lock.
-        """
+        """Return the two (roll, pitch, yaw) of a rotation, or one at gimbal lock, near the middle of the bounds."""
         (r00, r01, _), (r10, r11, _), (r20, r21, r22) = rows
         cosine = math.hypot(r00, r10)
         pitch, rolls, pitches, yaws = math.atan2(-r20, cosine), *self._bounds[3:]
@@ -264,7 +261,7 @@ def _leaning(angles: Floats) -> Floats:
 
 
 def _angle_rates(pitch: float, yaw: float) -> Floats:
-    """Return the Jacobian of (roll, pitch, yaw) by the angular velocity in the axes of *w*, shape (3, 3)."""
+    """Return the Jacobian of (roll, pitch, yaw) by the angular velocity in the region's frame *w*, shape (3, 3)."""
     cosine, sine = math.cos(pitch), math.sin(pitch)
     cosine = math.copysign(max(abs(cosine), _LOCK), cosine)
     c, s = math.cos(yaw), math.sin(yaw)
@@ -272,7 +269,7 @@ def _angle_rates(pitch: float, yaw: float) -> Floats:
 
 
 def _lean_rates(D: Floats) -> Floats:
-    """Return the Jacobian of lean (first row) and yaw (last row) by the angular velocity, shape (3, 3)."""
+    """Return the Jacobian of lean (first row) and yaw (last row) by the angular velocity in frame *w*, shape (3, 3)."""
     x, y, z = D[:3, 2].tolist()
     level = math.hypot(x, y) or 1.0
     over = max(1 + z, _LOCK)

@@ -189,10 +189,7 @@ class Progress:
 def _side_by_side(
     work: Callable[[Exercise], tuple[Exercise, str, Verdict]], exercises: list[Exercise]
 ) -> Iterator[tuple[Exercise, str, Verdict]]:
-    """Call ``work`` for all exercises in parallel; yield results in the order of completion.
-
-    An interrupt cancels the calls that have not begun.
-    """
+    """Call ``work`` for all exercises in parallel; yield the results as they come. An interrupt cancels the rest."""
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
         waiting = {pool.submit(work, exercise) for exercise in exercises}

@@ -237,7 +237,7 @@ class BodyBuilder:
         return (*frozen, *(freeze_manipulator(built, body, Diagnostics()) for built in unfinished))
 
     def _frozen(self, poses: Sequence[Pose], joints: Sequence[scene.Joint], active: int) -> scene.KinBody:
-        """Return the immutable body with the given link poses and without manipulators; the first joints are active."""
+        """Return the immutable body with these link poses and without manipulators; ``active`` counts active joints."""
         return scene.KinBody(
             name=self.name,
             is_robot=self.is_robot,
@@ -369,7 +369,6 @@ def _welded(joint: scene.Joint, built: JointBuilder, diagnostics: Diagnostics) -
 
 
 def _at_values(joint: scene.Joint, values: Sequence[float]) -> scene.Joint:
-    """Return the joint with new values, one for each axis."""
     if [axis.value for axis in joint.axes] == values:  # unchanged in most files; copies are slow
         return joint
     return replace(

@@ -119,10 +119,7 @@ def line_list(positions: Floats, width: float, rgba: Floats) -> Primitives:
 
 
 def _lines(positions: Floats, width: float, rgba: Floats, ends: Ints) -> Primitives:
-    """Return the lines between pairs of points; one with different end colours is divided into single-colour pieces.
-
-    ``ends`` are indices of the points, shape (n, 2).
-    """
+    """Return lines; one whose ends have different colours is divided into pieces of a single colour each."""
     pieces = max(1, int(np.ceil(_SHADES * np.abs(np.diff(rgba[ends], axis=1)).max(initial=0))))
     cuts = np.arange(pieces + 1) / pieces
     at = positions[ends[:, 0], None] + cuts[:, None] * np.diff(positions[ends], axis=1)

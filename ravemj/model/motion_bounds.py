@@ -55,8 +55,7 @@ def _joint_reach(body: KinBody, joint: Joint) -> Floats:
 def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
     """Return the largest distance, perpendicular to an axis, from a point to the shapes of a link and its descendants.
 
-    Point and axis are fixed to the link and in its frame. The axis is a unit vector; with a zero vector, the distance
-    is taken in all directions.
+    Point and axis are fixed to the link and in its frame; the axis is a unit vector, or zero for plain distances.
     """
     across = np.eye(3) - np.outer(axis, axis)
     distances = [-math.inf]

@@ -179,11 +179,7 @@ class Stream:
             raise RavemjError(f"stopped: {self._reason}")
 
     def _check_feedback(self, wanted: Floats, begin: float) -> None:
-        """Compare the measured joint values with the motion.
-
-        Raises:
-            RavemjError: The measurement is too old, or too far from the motion.
-        """
+        """Raise if the measured joint values are too old or too far from the motion."""
         guard, rows = self.guard, self.rows
         if guard.feedback is None:
             return

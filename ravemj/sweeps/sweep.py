@@ -169,7 +169,7 @@ def versions() -> dict[str, str]:
 
 
 def _plain(value: object) -> object:
-    """Convert an option to JSON data; of a function, name and source digest."""
+    """Convert an option to JSON data; a function to its name and source digest."""
     if callable(value):
         return f"{value.__module__}:{value.__qualname__} {source_digest(value)}"
     return json.loads(json.dumps(np.asarray(value).tolist()))
@@ -275,10 +275,7 @@ def _items_of_file(path: str) -> NDArray[Any]:
 
 
 def _shard_size(plan: _SweepInputs, folder: Path, shard: int | None, workers: int) -> int:
-    """Return the number of items per shard: ``shard``, else that of the folder's manifest, else an estimate.
-
-    The estimate comes from the computing time of a first block. For a user's function, it is a multiple of the block.
-    """
+    """Return the number of items per shard: as given, as in the folder's manifest, or by timing a first block."""
     task, is_function = plan.first, callable(plan.job.what)
     if shard is None:
         before = read_manifest(folder)

@@ -293,10 +293,7 @@ def _closed(answer: GraspResult) -> Run:
 
 
 def _reach(robot: Robot, index: int) -> float:
-    """Return the largest distance [m] from a joint's axis to points of its child link and to the next joints.
-
-    It is 1 for a prismatic joint.
-    """
+    """Return the largest distance [m] of child link and next joints from a joint's axis; 1 for prismatic joints."""
     joint = robot.GetJointFromDOFIndex(index)
     if joint.IsPrismatic(index - joint.GetDOFIndex()):
         return 1.0

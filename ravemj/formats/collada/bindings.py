@@ -122,7 +122,7 @@ def read_bindings(library: Library, instance: Element, scene: Element, root: Nod
 
 
 def _owner(library: Library, name: str, *scopes: Element) -> Element | None:
-    """Return the kinematics-scene instance that contains the parameter ``name``; None if no scope has the parameter."""
+    """Return the instance in the kinematics scene that contains the parameter ``name``; None if no scope has it."""
     item_ = next((item for scope in scopes if (item := library.resolve(name, scope)) is not None), None)
     around = None if item_ is None else item_.element
     while around is not None and local_name(around) not in _OWNERS:

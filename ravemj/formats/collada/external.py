@@ -109,10 +109,7 @@ def find_external(body: KinBody, number: int, target: str, scheme: str | None = 
 
 
 def _uri(path: str, target: str, scheme: str | None) -> str:
-    """Return a URI for the file ``path`` as referred to from the file ``target``.
-
-    It has the scheme if the file is in one of OpenRAVE's data folders, else it is a relative path.
-    """
+    """Return a URI that refers from the file ``target`` to ``path``; relative if not in a data folder of OpenRAVE."""
     name = name_in_data_folders(path) if scheme else ""
     file = find(name) if name else None
     if file is not None and os.path.samefile(file, path):  # an earlier folder may have another file of that name
@@ -123,8 +120,6 @@ def _uri(path: str, target: str, scheme: str | None) -> str:
 
 
 class _Finder:
-    """Finds the elements of a body in its file."""
-
     def __init__(self, library: Library, document: ColladaDocument, uri: str, suffix: str) -> None:
         self._library = library
         self._uri = uri

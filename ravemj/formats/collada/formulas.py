@@ -109,7 +109,6 @@ class _FormulaReader:
         return self.library.follow(symbol, "formula", attribute="definitionURL") if is_named else None
 
     def _content(self, math: Element | None, name_of: _NameOf, depth: int) -> str:
-        """Return the expression of a ``<math>``."""
         content = next(children(math), None)
         if content is None:
             raise _FormulaError("it is empty")

@@ -137,7 +137,7 @@ class ModelReader:
         read_formulas(self._library, self.model, self.joints, self._body)
 
     def _close_loops(self, ends: "list[_LoopEnd]") -> None:
-        """Add the joints that close kinematic loops. OpenRAVE's reader ignores them; only ravemj's own are read."""
+        """Add the joints that close kinematic loops, if ravemj wrote them; OpenRAVE's reader ignores all."""
         for start, parent in self.ends:
             path = start.get("joint")
             if next(own_techniques(start), None) is None:
@@ -275,7 +275,7 @@ class ModelReader:
 
 
 def _weld_turn(axis: AxisReader, T_parent_frame: Pose, T_parent_child: Pose) -> Wxyz:
-    """Return the orientation of a weld's child in its parent; the written limits' midpoint is added as a rotation."""
+    """Return the orientation of a weld's child in its parent after a rotation by the middle of the written limits."""
     turn = wxyz_from_axis_angle(axis.direction, axis.wrap)
     T_frame_child = T_parent_frame.inverse() @ T_parent_child
     return multiply(T_parent_frame.wxyz, multiply(turn, T_frame_child.wxyz))

@@ -237,10 +237,7 @@ class Library:
         return None if inner is None else ResolvedReference(inner.element, (*place.through, *inner.through))
 
     def _scope(self, element: Element) -> dict[str, ResolvedReference]:
-        """Return the descendants of an element by sid, including those of instantiated models.
-
-        Of several with the same sid, the nearest one, then the first one is returned.
-        """
+        """Return the descendants of an element by sid, also in instantiated models; of equal sids the nearest one."""
         names = self._scopes.get(element)
         if names is not None:
             return names
@@ -312,10 +309,7 @@ class Library:
 
 
 def _reference(element: Element) -> str | None:
-    """Return the path to which a ``<bind>``, ``<newparam>`` or ``<setparam>`` refers.
-
-    None for other elements and for parameters with a literal value.
-    """
+    """Return the path to which a bind or parameter refers; None for other elements and for literal values."""
     if local_name(element) == "bind":
         param = child(element, "param")
         return None if param is None else param.get("ref") or "".join(words(param))

@@ -64,7 +64,7 @@ class SystemWriter:
                 yield index, place, axis
 
     def _write_parameters(self, out: XmlText, scope: str, tree: Tree, inner: str = "") -> None:
-        """Write ``<newparam>`` elements for a model and its axes; with ``inner``, they refer to those of that scope."""
+        """Write parameters of a model and its axes in ``scope``, which refer to those in ``inner`` if given."""
         named = {f"{tree.model}_inst": f"{tree.model}_inst"}
         for index in tree.joints:
             for place in range(len(self._joints[index].axes)):

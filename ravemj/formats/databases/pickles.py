@@ -32,10 +32,7 @@ class _ArrayUnpickler(pickle.Unpickler):
 
 
 def _encoder() -> Callable[[str, str], bytes]:
-    """Return a new substitute for ``_codecs.encode``, limited to Latin-1 as in pickles of Python 2.
-
-    It is new for each unpickler, so that a pickle cannot modify a shared function.
-    """
+    """Return a ``_codecs.encode`` for Python 2's pickles: only Latin-1, and new, since a pickle may modify it."""
 
     def encode(text: str, encoding: str = "latin1") -> bytes:
         if encoding != "latin1":

@@ -146,10 +146,7 @@ def reader_sources() -> list[str]:
 
 
 def _loaded(folder: Path, entry: str) -> tuple[Parts, dict[str, str]] | None:
-    """Return parts of a cache entry and digests of the files to which it refers.
-
-    None if the entry is missing, damaged, or a renamed copy of another entry.
-    """
+    """Return parts and referenced files of an entry; None if it is missing, damaged, or a renamed copy of another."""
     file = f"{folder}/{entry}"
     try:
         descriptor = os.open(file, _READ)  # a model has many meshes, and ``open`` takes twice the time

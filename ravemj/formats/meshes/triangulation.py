@@ -78,8 +78,7 @@ def _fans_about_the_last(starts: Ints, sizes: Ints) -> Ints:
 def _halves(points: Floats, starts: Ints) -> Ints:
     """Split quadrilaterals, which may be bent, along a diagonal; return triangles as corner indices.
 
-    The diagonal starts at the first corner whose two angles to it sum to more than pi, or else, as in OpenRAVE's
-    importer, at the first corner.
+    It starts at the first corner whose angles to it sum to more than pi, else at the first, as in OpenRAVE's importer.
     """
     around = (np.arange(4)[:, np.newaxis] + np.arange(1, 4)) % 4  # for each corner the three others
     corners = points[starts[:, np.newaxis] + np.arange(4)]

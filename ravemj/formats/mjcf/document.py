@@ -126,10 +126,7 @@ def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None
 
 
 def _write_option(out: XmlLines, scene: Scene, options: Options) -> None:
-    """Write gravity, time step and integrator if they are not MuJoCo's defaults.
-
-    Servos need an implicit integrator, since MuJoCo's Euler integrates them explicitly.
-    """
+    """Write options that are not MuJoCo's defaults; servos need an integrator that treats them implicitly."""
     servos = options.actuators in {"position", "velocity"}
     attributes: dict[str, Attribute | None] = {
         "gravity": scene.gravity,
@@ -175,8 +172,6 @@ class _UniqueNames:
 
 
 class _MjcfWriter:
-    """Writes the sections of an MJCF document, body by body."""
-
     def __init__(self, diagnostics: Diagnostics, options: Options) -> None:
         self.diagnostics = diagnostics
         self.options = options

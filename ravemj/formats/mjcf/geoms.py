@@ -65,10 +65,7 @@ class MjcfGeomWriter:
         )
 
     def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: XmlLines, *, seen: bool) -> bool:
-        """Write a mesh for collision and, if ``seen``, for display; return whether it collides.
-
-        One geom serves both purposes if possible.
-        """
+        """Write a mesh for collision and, if ``seen``, display, in one geom if possible; return whether it collides."""
         hulls = self._hulls(geometry, mesh)
         both = seen and hulls == (mesh,)
         if seen:

@@ -58,7 +58,7 @@ def _nearest(small: float, middle: float, large: float) -> Vec3:
 
 
 def _is_legal_diagonal(inertial: Inertial) -> bool:
-    """Return True if the tensor is diagonal, and valid as is the mass: the usual case, checked without numpy."""
+    """Return True if the tensor is diagonal, and mass and tensor are valid: the usual case, checked without numpy."""
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertial.inertia
     if xy or xz or yz or not SMALLEST <= inertial.mass < math.inf:
         return False

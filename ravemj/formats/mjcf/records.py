@@ -37,7 +37,7 @@ _KINDS: dict[str, type] = {
         *(type(row.device) for row in scene.SENSOR_KINDS.values()),
     )
 }
-"""Shape and sensor classes by name, which the JSON names since fields may hold any of them."""
+"""Shape and sensor classes by name. The JSON contains the name, since a field may hold any of them."""
 
 _LEFT_OUT = {"source", "expression", "render_file", "collision_file"}
 
@@ -169,11 +169,7 @@ class _RecordReader:
         self._source = source
 
     def decode(self, kind: object, value: object) -> object:
-        """Convert JSON types to a value of the type ``kind``.
-
-        Raises:
-            ValueError: The value is of another type.
-        """
+        """Convert JSON types to a value of the type ``kind``; raise ValueError if ``value`` does not fit."""
         if kind is scene.Mesh:
             return self._mesh(value)
         if kind is Pose:
@@ -241,7 +237,6 @@ class _RecordReader:
 
 @cache
 def _hints(kind: type) -> Mapping[str, object]:
-    """Return the types of a class's fields by name."""
     return typing.get_type_hints(kind, {**vars(typing), "Expression": Expression})
 
 

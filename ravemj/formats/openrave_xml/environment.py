@@ -119,11 +119,7 @@ class _FileContents:
         self.renames = False
 
     def read(self, root: Element) -> None:
-        """Read a root element, such as ``<Environment>``, ``<Robot>`` or a URDF's ``<robot>``.
-
-        Raises:
-            SourceError: The element belongs to another format.
-        """
+        """Read a root element, such as ``<Environment>``; raise if it belongs to another format."""
         readers = {"robot": self.read_body, "kinbody": self.read_body, "sensor": self.read_sensor}
         check_robot(root)
         if is_urdf(root):
@@ -199,8 +195,6 @@ class _FileContents:
 
 
 class _EnvironmentScope:
-    """Reading state of an ``<Environment>``."""
-
     def __init__(self, document: _FileContents) -> None:
         self.document = document
         self.view = View()

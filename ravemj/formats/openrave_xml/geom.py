@@ -77,11 +77,11 @@ class _Geom(Placed):
         self.vectors["half_extents"] = scale(self.vectors["half_extents"], 0.5)
 
     def read_number(self, element: Element) -> None:
-        """Read a scalar size that is named like its tag."""
+        """Store a scalar size under the name of its tag."""
         self.numbers[element.tag] = number(element, self.context.diagnostics, self.numbers.get(element.tag, 0.0))
 
     def read_vector(self, element: Element) -> None:
-        """Read a three-dimensional size that is named like its tag."""
+        """Store a three-dimensional size under the name of its tag."""
         self.vectors[element.tag] = vector(element, self.context.diagnostics, self.vectors.get(element.tag, ZERO))
 
     def read_cross_section(self, element: Element) -> None:
@@ -209,10 +209,7 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
 
 
 def _lost(file: MeshFile | None) -> tuple[MeshPart, ...]:
-    """Return what OpenRAVE shows for an unreadable file: nothing, or a reddish part for most missing absolute paths.
-
-    See gap-71 and gap-72.
-    """
+    """Return OpenRAVE's parts for a missing file: none (gap-71), or for most absolute paths a red part (gap-72)."""
     if file is None or not os.path.isabs(file.name) or file.name.lower().endswith(".stl") or os.path.isfile(file.name):
         return ()
     return (_REDDISH,)

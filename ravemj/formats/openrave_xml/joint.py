@@ -33,8 +33,6 @@ _UNIT: tuple[Vec3, Vec3, Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1
 
 @dataclass(slots=True)
 class _JointElement:
-    """Reading state of a ``<Joint>``."""
-
     context: Context
     body: BodyBuilder
     kind: JointKind
@@ -106,10 +104,7 @@ class _JointElement:
                 self.context.diagnostics.warn("ignored-tag", message, element.source)
 
     def read_stop(self, element: Element) -> None:
-        """Read the deprecated ``lostop`` or ``histop``, in degrees except for sliders.
-
-        Either also reverses all axes (joint-17).
-        """
+        """Read the deprecated ``lostop`` or ``histop`` [deg, or m for sliders], which reverses all axes (joint-17)."""
         factor = 1.0 if self.kind == "slider" else math.pi / 180
         limit = "lower" if element.tag == "lostop" else "upper"
         before = [axis[limit] for axis in self.axes]
@@ -136,7 +131,7 @@ class _JointElement:
         self.parameters = self.context.with_parameter(self.parameters, element)
 
     def _set_all(self, element: Element, name: str, factor: float) -> None:
-        """Read a number per axis and multiply it by ``factor``; a missing number is the previous one (gap-38)."""
+        """Read a number for each axis, by default the previous one, and multiply it by ``factor`` (gap-38)."""
         before = [axis[name] if name in axis else float(getattr(_PLAIN_AXIS, name)) for axis in self.axes]
         values = numbers(element, len(self.axes), self.context.diagnostics, before)
         if name in _NOT_NEGATIVE:
@@ -272,10 +267,9 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
 
 
 def _direction(reader: _JointElement, index: int, frame: Pose, *, exchanged: bool) -> Vec3:
-    """Return the direction of an axis in the frame of the first link, or of OpenRAVE's default axis.
+    """Return the direction of a joint's axis, or OpenRAVE's default direction, in the first link's frame.
 
-    The default is the first link's z, whatever the order of the links (errors-26); a slider without an axis gets 0
-    and does not move.
+    The default is z, whatever the order of the links (errors-26); a slider without an axis gets 0 and does not move.
     """
     direction = _UNIT[index] if reader.kind == "spherical" else reader.directions.get(index)
     if direction is not None:
@@ -306,7 +300,6 @@ def _read_kind(element: Element, context: Context) -> JointKind:
 
 
 def _equations(element: Element, context: Context) -> Equations | None:
-    """Return the mimic equations of a joint, or None if it mimics none."""
     attributes = element.attributes
     if any(name.startswith("mimic_") for name in attributes):
         return Equations(*(attributes.get(f"mimic_{part}", "") for part in ("pos", "vel", "accel")))

@@ -36,11 +36,7 @@ from ravemj.model.scene import KinBody
 
 
 class _Scope(Placed):
-    """Reading state of a ``<Robot>`` or ``<KinBody>``.
-
-    Attributes:
-        depth: Nesting depth; 0 for the outermost element.
-    """
+    """Reading state of a ``<Robot>`` or ``<KinBody>``; ``depth`` is 0 for the outermost one."""
 
     def __init__(self, body: BodyBuilder, context: Context, scale: Vec3, depth: int, *, skip_geometry: bool) -> None:
         super().__init__(context, ChildTransform(scale=scale))
@@ -266,7 +262,7 @@ def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError 
 
 
 def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
-    """Report a ``type`` other than a plain body's; discard an included file if there is a type, as OpenRAVE does."""
+    """Report a ``type`` that is no plain body's. If there is a type, discard the included file, as OpenRAVE does."""
     kind = element.attributes.get("type")
     if kind is None:
         return

@@ -95,10 +95,7 @@ def uniform(scale: Vec3, source: Source, context: Context) -> float:
 
 
 def _join(body: BodyBuilder, other: BodyBuilder) -> None:
-    """Merge ``other`` into ``body``. Links with equal names are merged.
-
-    If the first link of ``other`` is among them, ``other`` is moved so that its pose agrees with ``body``.
-    """
+    """Merge ``other`` into ``body``; equally named links are merged, and ``other`` is moved to fit its first link."""
     places = [body.find_link(link.name) for link in other.links]
     T_body_other = Pose()
     if places[0] is not None:

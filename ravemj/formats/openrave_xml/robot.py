@@ -21,8 +21,6 @@ def named_link(body: BodyBuilder, element: Element, owner: str, context: Context
 
 
 class _ManipulatorScope(Placed):
-    """Reading state of a ``<Manipulator>``."""
-
     def __init__(self, body: BodyBuilder, built: ManipulatorBuilder, context: Context) -> None:
         super().__init__(context)
         self.body = body

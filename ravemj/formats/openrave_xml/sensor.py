@@ -43,8 +43,6 @@ class SensorElement(NamedTuple):
 
 
 class _SensorScope(Placed):
-    """Reading state of a ``<Sensor>``."""
-
     def __init__(self, context: Context, device: Device) -> None:
         super().__init__(context)
         self.device = device

@@ -122,8 +122,6 @@ _HINTS = {
 
 
 class _TreeBuilder:
-    """Builds the element tree from expat's events."""
-
     def __init__(self, path: str, included_from: Source | None) -> None:
         self.root: Element | None = None
         self._path = path
@@ -143,7 +141,6 @@ class _TreeBuilder:
         self._expat.EntityDeclHandler = self._declared
 
     def parse(self, content: bytes) -> SourceError | None:
-        """Parse the content; return the syntax error, if any."""
         self._content = content
         try:
             self._expat.Parse(content, True)

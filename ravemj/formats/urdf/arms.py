@@ -41,7 +41,7 @@ def guess(
 
 
 def _arms(tools: list[str], tree: RobotTree) -> list[ManipulatorBuilder]:
-    """Return an arm for each tool link, one per last joint, in the order of the effectors in the file."""
+    """Return one arm for each last joint before a tool link, in the order of the effectors in the file."""
     arms: dict[str, ManipulatorBuilder] = {}  # by the last joint
     dofs = {link: _dofs(link, tree) for link in tools}
     for link in tools:

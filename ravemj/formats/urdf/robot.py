@@ -96,7 +96,7 @@ def _note_left_out(root: Element, context: Context) -> None:
 
 
 def _floating(frames: list[UrdfJoint], elements: Mapping[str, Element], context: Context) -> dict[str, UrdfJoint]:
-    """Return the floating joints by child link; they are omitted, since bodies of OpenRAVE float by default.
+    """Return the floating joints by child link; they are omitted from the body, since OpenRAVE's bodies float.
 
     Raises:
         SourceError: The parent of a floating joint has shapes, or is the child of another joint.

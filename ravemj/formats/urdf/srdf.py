@@ -140,10 +140,7 @@ class _Srdf:
     # Groups
 
     def _group(self, name: str, opened: tuple[str, ...]) -> SrdfGroup:
-        """Return the group ``name``, its subgroups included; ``opened`` are the enclosing groups.
-
-        A listed link includes its parent joint.
-        """
+        """Return a group with its subgroups; a listed link includes its parent joint. ``opened`` are outer groups."""
         if name in self.groups:
             return self.groups[name]
         element = self.elements[name]

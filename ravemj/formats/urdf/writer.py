@@ -81,7 +81,7 @@ def write(scene: Scene, diagnostics: Diagnostics) -> UrdfDocument:
 
 
 class _UrdfWriter:
-    """Writes links, then joints in the order of ``Load``: moving joints, welds, mimic joints."""
+    """Writes links, then joints in the order that ``Load`` gives them: moving joints, welds, mimic joints."""
 
     def __init__(self, body: KinBody, losses: Losses) -> None:
         self.body = body

@@ -196,7 +196,7 @@ class Backdrop(NamedTuple):
 
 
 def _line_parts(places: Floats, footprints: Floats) -> Floats:
-    """Return the fraction of each pixel that grid lines cover, given pixel positions and widths in cells."""
+    """Return the fraction of each pixel that grid lines cover; positions and pixel widths are in grid cells."""
     half, apart = 0.5 * LINE_WIDTH, np.abs(places - np.rint(places))
     width = np.maximum(footprints, 1e-9)
     part = np.clip(0.5 + (half - apart) / width, 0, 1) * np.minimum(1, LINE_WIDTH / width)

@@ -66,7 +66,6 @@ class GlRenderer(Renderer):
         return picture
 
     def _backdrop(self, look: Look, camera: Camera) -> NDArray[np.uint8]:
-        """Return a picture of the background alone."""
         columns, rows = camera.ray_parts(*self._size)
         rays = columns + rows
         return np.rint(255 * sky_colours(look, rays[..., 2] / np.linalg.norm(rays, axis=2))).astype(np.uint8)

@@ -68,7 +68,7 @@ def _is_own(model: mujoco.MjModel, light: mujoco.MjvLight) -> bool:
 
 
 def _spread(lights: Sequence[Light], rotation: Floats, parts: int) -> Iterator[tuple[Light, Floats, float]]:
-    """Yield each light, or ``parts`` copies of one with shadows: light, world direction, fraction of the intensity."""
+    """Yield (light, world direction, fraction of intensity), with ``parts`` directions for a light with shadows."""
     for light in lights:
         direction = light.direction_in_world(rotation)
         if not light.casts_shadows or parts == 1:

@@ -47,7 +47,7 @@ _TWO_WALLS = (
     mujoco.mjtGeom.mjGEOM_CYLINDER,
     mujoco.mjtGeom.mjGEOM_BOX,
 )
-"""Convex geom types. A ray that hits the back face of one started inside it."""
+"""Convex geom types, which a ray enters and leaves once: if it hits a back face, it started inside."""
 
 
 class RayRenderer(Renderer):
@@ -169,13 +169,7 @@ class _RayScene:
     backdrop: Backdrop
 
     def colors(self, rays: Floats, drawn: Fragments, layers: int = _LAYERS) -> Floats:
-        """Return unrounded colours in 0..255, shape (N, 3), along rays in the world frame, shape (N, 3).
-
-        Args:
-            rays: Directions of the rays from the camera, with depth 1.
-            drawn: Fragments of drawings along the rays.
-            layers: Number of transparent surfaces that a ray may still pass through.
-        """
+        """Return colours in 0..255, shape (N, 3), along rays with at most ``layers`` transparent surfaces."""
         colors = self.backdrop.colours(rays)
         geom_ids, depth, normals = self.cast(rays)
         hit = np.flatnonzero(geom_ids >= 0)

@@ -78,7 +78,6 @@ class Animation(NamedTuple):
         return Path(path)
 
     def _repr_html_(self) -> str:
-        """Return HTML that shows the animation in a notebook."""
         return (
             f'<iframe srcdoc="{html.escape(self.html)}" title="motion" allow="fullscreen" '
             f'style="width: 100%; height: {_HEIGHT}px; border: 0"></iframe>'

@@ -111,7 +111,7 @@ def _joint(world: WorldModel, joint: int) -> dict[str, Any]:
 
 
 def _placed(world: WorldModel, body: int, moving: Sequence[int], driven: Sequence[int]) -> dict[str, Any]:
-    """Return a moving body as JSON data: its joints, and its pose before they move it, in its parent or the world."""
+    """Return a moving body as JSON data: joints, and pose without joint motion in its moving parent or the world."""
     model, data = world.model, world.data
     first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
     joints = [joint for joint in range(first, first + count) if joint in driven]

@@ -83,7 +83,7 @@ def surfaces(model: mujoco.MjModel, geoms: NDArray[np.bool_] | None = None, *, h
 def _shared(
     model: mujoco.MjModel, geom: int, *, is_hull: bool
 ) -> tuple[tuple[int, ...], Floats, Callable[[], TriangleMesh]]:
-    """Return the key of geoms that share a mesh, this geom's scale, shape (3,), and the constructor of the mesh."""
+    """Return a key that geoms with the same mesh share, this geom's scale, shape (3,), and the mesh's constructor."""
     kind, data, size = int(model.geom_type[geom]), int(model.geom_dataid[geom]), model.geom_size[geom]
     match mujoco.mjtGeom(kind):
         case mujoco.mjtGeom.mjGEOM_MESH:

@@ -156,10 +156,7 @@ def _smaller(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 
 
 def _root_slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
-    """Return the derivative of a root of a polynomial, by the implicit function theorem.
-
-    It is minus the polynomial with differentiated coefficients at the root, divided by its slope there.
-    """
+    """Return the derivative of a root r of a polynomial p: -dp(r) / p'(r), where dp differentiates the coefficients."""
     change, steepness = slopes[0], algebra.number(0.0)
     value = node.arguments[0]
     for coefficient, slope in zip(node.arguments[1:], slopes[1:], strict=True):
@@ -170,10 +167,9 @@ def _root_slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 
 
 def _law_of_cosines(algebra: Algebra, a: Node, b: Node, gamma: Node, slopes: Sequence[Node]) -> tuple[Node, Node]:
-    """Differentiate half of c^2 = a^2 + b^2 - 2 a b cos(gamma), given the derivatives of a and b (``slopes``).
+    """Return half the derivative of c^2 = a^2 + b^2 - 2 a b cos(gamma), that is c c', in two parts.
 
-    Returns:
-        The part of c c' without gamma', and the factor of gamma' in c c'.
+    They are the part without gamma', and the factor of gamma'; ``slopes`` are the derivatives of a and b.
     """
     da, db = slopes
     lengths = algebra.add(algebra.mul(a, da), algebra.mul(b, db))

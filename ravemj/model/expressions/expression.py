@@ -175,7 +175,7 @@ class Expression:
 
 
 def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:
-    """Return a function that evaluates ``node``, given the list of values of the nodes in ``places``, by index."""
+    """Return a function that computes ``node`` from a list of values; ``places`` are indices of nodes in the list."""
     if node in places:
         place = places[node]
         return lambda values: float(values[place])
@@ -195,7 +195,7 @@ def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:
 
 
 def _first_within(nodes: list[Node], lower: float, upper: float) -> Node:
-    """Return a node for an equation's first value within limits, else for its first value; see ``within``.
+    """Return a node for a multivalued equation's first value within limits, else its first value; see ``within``.
 
     If a multivalued function occurs twice with the same arguments, both have the same value.
     """

@@ -46,7 +46,7 @@ def affine(nodes: list[Node]) -> Affine | None:
 
 
 def _polynomial(nodes: list[Node]) -> _Polynomial | None:
-    """Return the last of ``nodes`` as a polynomial in the variables; None if it is none."""
+    """Return the last of ``nodes`` as a polynomial in the variables; None if it is not a polynomial."""
     polynomials: dict[Node, _Polynomial | None] = {}
     for node in nodes:
         match node:
@@ -65,7 +65,7 @@ def _polynomial(nodes: list[Node]) -> _Polynomial | None:
 
 
 def _combined(function: str, known: list[_Polynomial]) -> _Polynomial | None:
-    """Return a function of polynomials as a polynomial; None if it is none."""
+    """Apply a function to polynomials; return None if the result is not a polynomial."""
     definition = FUNCTIONS[function]
     if all(terms.keys() <= {()} for terms in known) and definition.roots is None:
         return {(): definition.scalar(*(terms.get((), 0.0) for terms in known))}

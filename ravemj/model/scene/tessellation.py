@@ -57,10 +57,7 @@ def _cube() -> tuple[Floats, Ints]:
 
 @functools.cache
 def _unit_cylinder() -> tuple[Floats, Ints]:
-    """Return vertices and triangles of a cylinder of radius 1 along z from -1 to 1, in OpenRAVE's order.
-
-    The first vertices are the centres of the upper and the lower end.
-    """
+    """Return vertices and triangles of a cylinder, radius 1 and height 2, as in OpenRAVE: end centres first."""
     angles = 2 * np.pi * np.arange(SIDES) / SIDES
     ring = np.repeat(np.column_stack([np.cos(angles), np.sin(angles), np.ones(SIDES)]), 2, axis=0)
     ring[1::2, 2] = -1.0

@@ -135,10 +135,7 @@ def _indexed(node: InventorNode, _count: int) -> tuple[Ints, Ints]:
 
 
 def _runs(node: InventorNode, count: int) -> tuple[Ints, Ints]:
-    """Return the sizes and point indices of faces that use consecutive points.
-
-    A size of -1 in ``numVertices`` stands for all remaining points.
-    """
+    """Return sizes and point indices of faces that use consecutive points; a size of -1 takes all remaining points."""
     start = node.integer("startIndex", 0)
     there = max(count - start, 0) if start >= 0 else 0
     sizes = node.integers("numVertices", (-1,)).clip(-1, there + 1)
