@@ -83,7 +83,7 @@ def _explain(error: OSError) -> None:
 
 
 def _joined(words: Sequence[str]) -> list[str]:
-    """Join ``--to -1,0`` to ``--to=-1,0``, since argparse takes values with a leading dash for options."""
+    """Join ``--to -1,0`` to ``--to=-1,0``, since argparse interprets values with a leading dash as options."""
     joined: list[str] = []
     for word in words:
         if joined and joined[-1] in _VECTOR_OPTIONS and re.match(r"-([\d.]|inf|nan)", word, re.IGNORECASE):

@@ -40,7 +40,7 @@ def check(options: argparse.Namespace) -> int:
 
 
 def _key(finding: Diagnostic) -> tuple[object, ...]:
-    """Return a key that is equal for diagnostics of the same problem, however the file's path is written."""
+    """Return a key that is equal for reports of the same problem, independent of how the path is written."""
     return os.path.realpath(finding.source.file), finding.source.line, finding.code, finding.message
 
 
@@ -49,7 +49,7 @@ def _number(count: int, noun: str) -> str:
 
 
 def _entry(finding: Diagnostic) -> dict[str, object]:
-    """Return a diagnostic as JSON data; the keys are part of the interface."""
+    """Return a diagnostic as JSON data; the keys are stable."""
     return {
         "file": finding.source.file,
         "line": finding.source.line or None,

@@ -67,7 +67,7 @@ def _outside_files(path: str | os.PathLike[str], named: Mapping[str, Source]) ->
 
 
 def _default_masses(body: KinBody) -> Iterator[Diagnostic]:
-    """Yield a note for each moving link that has OpenRAVE's default mass because its file gives none."""
+    """Yield a note for each moving link with OpenRAVE's default mass because the file gives none."""
     for link in body.links:
         if link.inertial is DEFAULT_INERTIAL and not link.static:
             message = "a Body without a <Mass> weighs 1 kg, with the inertia of a sphere of 1 m"

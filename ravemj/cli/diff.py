@@ -44,7 +44,7 @@ def _scene(model: str) -> Scene:
 
 
 def _entry(difference: Difference) -> dict[str, object]:
-    """Return a difference as JSON data; the keys are part of the interface."""
+    """Return a difference as JSON data; the keys are stable."""
     return {
         "part": difference.part,
         "quantity": difference.quantity,
@@ -55,7 +55,7 @@ def _entry(difference: Difference) -> dict[str, object]:
 
 
 def _short(value: object) -> str:
-    """Return a value as text with few digits, shortened if it is long."""
+    """Return a value as short text with few digits."""
     text = _digits(value)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 

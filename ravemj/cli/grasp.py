@@ -118,7 +118,7 @@ def _loaded(env: Environment, name: str) -> KinBody:
 
 
 def _pose(numbers: Sequence[float], body: KinBody) -> Floats:
-    """Return the pose of ``--at``; if it has three numbers, with the body's present rotation."""
+    """Return the pose of ``--at``; three numbers leave the rotation unchanged."""
     if len(numbers) == _POSE:
         return pose_goal(numbers, "--at")
     if len(numbers) != _POINT:

@@ -107,7 +107,7 @@ def _told(grasp: Grasp) -> str:
 
 
 def _reach(arm: Manipulator, target: KinBody) -> float:
-    """Return a radius [m] around the target that contains all motion of the hand."""
+    """Return a radius around the target in which the hand moves [m]."""
     boxes = [link.ComputeAABB() for link in arm.GetChildLinks()]
     low = np.min([box.pos() - box.extents() for box in boxes], axis=0)
     high = np.max([box.pos() + box.extents() for box in boxes], axis=0)
@@ -164,7 +164,7 @@ def _arm(env: Environment, arm: Manipulator, body: KinBody, target: KinBody, gra
 
 
 def _motion(hands: Sequence[_DrawnHand], arms: Sequence[_DrawnArm]) -> BodyMotion:
-    """Return the motion of all hands: approach along a straight line, then closing of the fingers."""
+    """Return the motion of all hands: to the target along a straight line, then the fingers close."""
 
     def place(time: float) -> None:
         back = _BACK * max(0.0, 1 - time / _APPROACH)

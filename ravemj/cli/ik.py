@@ -104,7 +104,7 @@ def _goal(options: argparse.Namespace) -> Floats:
 
 
 def _entry(solution: Solution) -> dict[str, object]:
-    """Return a solution as JSON data; the keys are part of the interface."""
+    """Return a solution as JSON data; the keys are stable."""
     return {
         "values": solution.values.tolist(),
         "branch": solution.branch,

@@ -117,7 +117,7 @@ def _next(course: Course, progress: Progress) -> Exercise:
 
 
 def _watch(course: Course, progress: Progress, wanted: list[Exercise]) -> int:
-    """Check the wanted exercises, else the next unsolved one, after each save until Ctrl-C."""
+    """Check the next unsolved exercise, or the wanted ones, after each save until Ctrl-C."""
     stamps: dict[Exercise, int] = {}
     while True:
         present = {exercise: _stamp(progress.file(exercise)) for exercise in wanted or course.exercises}

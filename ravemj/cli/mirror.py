@@ -83,7 +83,7 @@ def _source(states: JointStates, options: argparse.Namespace) -> Callable[[], No
 
 
 def _update(robot: Robot, states: JointStates) -> None:
-    """Set the robot to the latest joint state, which may exceed the joint limits."""
+    """Set the robot to the latest state, which may exceed its limits."""
     values = states.pop()
     if values:
         names = robot.simulation_state.scene.dof_names
@@ -92,7 +92,7 @@ def _update(robot: Robot, states: JointStates) -> None:
 
 
 def _ghost_motion(env: Environment, robot: Robot, options: argparse.Namespace) -> tuple[Robot, Motion]:
-    """Add a transparent copy of the robot; return it with the motion of the options' file."""
+    """Add a transparent copy of the robot; return the copy and its motion, from the options' file."""
     followed, dofs = followed_file(env.simulation, motion_file(env, options)), range(robot.GetDOF())
     before, rows = robot.GetDOFValues(), list[Floats]()
     times = list(followed.frame_times(1 / _PERIOD))
@@ -105,7 +105,7 @@ def _ghost_motion(env: Environment, robot: Robot, options: argparse.Namespace) -
 
 
 def _save(states: JointStates, options: argparse.Namespace) -> None:
-    """Write the recordings that options request, and report skipped messages."""
+    """Write the requested recording, and report skipped messages."""
     for trouble, count in states.skipped.items():
         _say(f"skipped {count} messages: {trouble}")
     came, values = states.motion(), states.values

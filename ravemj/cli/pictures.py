@@ -143,7 +143,7 @@ def picture_of(options: argparse.Namespace, env: Environment, camera: ArrayLike 
 
 
 def _play_in_window(env: Environment, motion: BodyMotion, shot: Shot, options: argparse.Namespace) -> bool:
-    """Play a motion in a window until it is closed; return False if no window can be opened."""
+    """Play in a window, and wait until it is closed; return False if no window can be opened."""
     if not has_display():
         return False
     env.SetViewer("window")

@@ -115,7 +115,7 @@ def _add_examples(plan: Plan) -> None:
 
 
 def _fingerprint(env: Environment) -> str:
-    """Return a hash of the scene: links, joints, shapes, pose and joint values of all bodies."""
+    """Return a hash of all bodies: their links, joints, shapes, poses and joint values."""
     numbers = [(body.GetTransform(), body.GetDOFValues()) for body in env.GetBodies()]
     texts = [f"{body.GetName()} {body.GetKinematicsGeometryHash()}" for body in env.GetBodies()]
     rounded = [[(array.round(9) + 0.0).tolist() for array in arrays] for arrays in numbers]

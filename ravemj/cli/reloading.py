@@ -110,7 +110,7 @@ class Reloader:
         self._stamps = _stamps(self._files)
 
     def _watch_also(self, source: Source) -> None:
-        """Watch a file that could not be read, in addition to the others."""
+        """Also watch a file that could not be read."""
         if source.file not in self._files:
             self._files = (*self._files, source.file)
             self._stamps = _stamps(self._files)

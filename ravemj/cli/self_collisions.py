@@ -70,7 +70,7 @@ def _touching(robot: Robot) -> frozenset[Pair]:
 
 
 def _configurations(body: KinBody, count: int) -> Floats:
-    """Return random configurations within the joint limits, shape (count, dof)."""
+    """Return random joint values within the limits, shape (count, dof)."""
     reach = [(-math.pi, math.pi) if axis.circular else (axis.lower, axis.upper) for axis in body.dof_axes]
     lower, upper = np.array(reach).reshape(-1, 2).T
     return np.random.default_rng(0).uniform(lower, upper, (count, len(reach)))

@@ -42,7 +42,7 @@ def command(commands: Commands, run: str, summary: str, *examples: str) -> argpa
 
 
 def _complete(argument: argparse.Action, function: str) -> None:
-    """Set the shell completion of an argument to the named function of ``ravemj.cli.completion``."""
+    """Set the shell completion of an argument to a function of ``ravemj.cli.completion``."""
 
     def completer(prefix: str, **known: object) -> list[str]:
         completion = import_module("ravemj.cli.completion")  # only where a shell asks

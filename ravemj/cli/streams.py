@@ -38,7 +38,7 @@ def _in_ascii(error: UnicodeError) -> tuple[str, int]:
 
 
 class _Messages(io.TextIOWrapper):
-    """Text stream that never raises: text that cannot be written is lost."""
+    """A stream that never fails: text that cannot be written is lost, and the command continues."""
 
     def write(self, text: str) -> int:
         with suppress(OSError):

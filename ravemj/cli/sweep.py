@@ -109,7 +109,7 @@ def _function(name: str, option: str) -> Callable[..., Any]:
 
 @contextmanager
 def _shown(options: argparse.Namespace) -> Generator[tuple[Progress, Told | None]]:
-    """Show progress: as a bar on a terminal, else as a line every half minute; with ``--json`` as a line per shard."""
+    """Show progress: a bar on a terminal, else a line every half minute; with ``--json`` a line for each shard."""
     begin = last = time.monotonic()
     first: int | None = None  # shards that were done before
 

@@ -26,7 +26,7 @@ Worker: TypeAlias = "Callable[[WindowViewer | WebViewer], Callable[[], None]]"
 """Function that returns, for a viewer, the function to be called periodically while it is open."""
 
 _LOOK = 0.1
-"""Interval between checks for changed files [s]."""
+"""Period of checks for changed files [s]."""
 
 _TIMESTEP = 0.01
 """Time step of physics [s]."""
@@ -71,7 +71,7 @@ def show(
 
 
 def _open_window(env: Environment, robot: Robot | None, options: argparse.Namespace) -> WindowViewer | None:
-    """Open a window; return None if OpenGL is not available."""
+    """Open a window; return None if OpenGL is not available for it."""
     env.SetViewer("window")
     viewer = env.GetViewer()
     if not isinstance(viewer, WindowViewer):
@@ -81,7 +81,7 @@ def _open_window(env: Environment, robot: Robot | None, options: argparse.Namesp
 
 
 def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
-    """Set title, camera, selection and look; by default the camera shows the robot or everything obliquely."""
+    """Set title, selection and look; if the file has no camera, show the robot or everything obliquely."""
     viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
     if robot is not None or env.renderer.file_camera() is None:
         center, radius = shown_sphere(env, robot)

@@ -18,7 +18,7 @@ from ravemj.rave.whole_body import WholeBodyIK, WholeBodyResult
 _SIZES = (3, 7)
 _MOST_STEPS = 1000
 _BALANCE = 1e-5
-"""Weight of the centre-of-mass task, too small to affect whether goals are within tolerance."""
+"""Weight of the centre-of-mass task: too small to affect the tolerance of a goal."""
 _BASE_ROW = "base x,y,z,qw,qx,qy,qz"
 
 
@@ -59,7 +59,7 @@ def _solved(robot: Robot, options: argparse.Namespace) -> WholeBodyResult:
 
 
 def _entry(robot: Robot, result: WholeBodyResult) -> dict[str, object]:
-    """Return a result as JSON data; the keys are part of the interface."""
+    """Return a result as JSON data; the keys are stable."""
     return {
         "converged": result.converged,
         "reason": result.reason,
@@ -70,7 +70,7 @@ def _entry(robot: Robot, result: WholeBodyResult) -> dict[str, object]:
 
 
 def _base(robot: Robot) -> list[float]:
-    """Return the world pose of the first link as x, y, z, qw, qx, qy, qz."""
+    """Return the pose of the first link, x, y, z, qw, qx, qy, qz."""
     pose: Floats = robot.GetTransformPose()
     return [*pose[4:].tolist(), *pose[:4].tolist()]
 

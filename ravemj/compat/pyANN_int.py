@@ -16,7 +16,7 @@ _CHUNK = 4_000_000
 """Maximum number of distances that are computed at once, to limit memory."""
 
 _NONE = -1
-"""Index that stands for no point."""
+"""Index that means no point."""
 
 
 class KDTree(ApiObject):

@@ -23,7 +23,7 @@ from ravemj.errors import ArgumentError, RavemjError
 
 _PYTHONS_ERRORS = (TypeError, AttributeError, ValueError, LookupError, ArithmeticError, MemoryError)
 _OURS = (*map(os.path.dirname, (os.path.dirname(__file__), os.__file__, np.__file__)), "<frozen", "<__array_function__")
-"""Path prefixes of the code of ravemj, Python and numpy; errors raised elsewhere, as in user code, are not changed.
+"""Path prefixes of the code of ravemj, Python and numpy; errors from other code, such as a user's, are not changed.
 
 File names of numpy's compiled code end in ``.pyx``.
 """
@@ -118,7 +118,7 @@ def explain_methods(kind: type, skipped: Collection[str] = ()) -> None:
 
 
 def _takes(method: FunctionType) -> bool:
-    """Return whether a method has parameters besides ``self``."""
+    """Return whether a method has arguments besides ``self``."""
     code = method.__code__
     return code.co_argcount + code.co_kwonlyargcount > 1 or bool(code.co_flags & (CO_VARARGS | CO_VARKEYWORDS))
 
@@ -175,7 +175,7 @@ def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwar
 
 
 def _is_in(names: Iterable[str], error: Exception) -> bool:
-    """Return whether the message of an error contains one of the names as a word."""
+    """Return whether the message of an error has one of the names as a word."""
     return any(re.search(rf"\b{name}\b", str(error)) for name in names)
 
 
@@ -189,7 +189,7 @@ def _with_article(kind: str) -> str:
 
 
 def _kinds(annotation: object) -> list[str]:
-    """Return the type names in an annotation, without type parameters."""
+    """Return the names of the types in an annotation, without type parameters."""
     text = annotation if isinstance(annotation, str) else formatannotation(annotation)
     while "[" in text:
         text = re.sub(r"\[[^\[\]]*\]", "", text)

@@ -51,7 +51,7 @@ def checked_numbers(values: ArrayLike, name: str) -> Floats:
 
 
 def _floats(values: ArrayLike, name: str) -> Floats:
-    """Return the values as by ``checked_numbers``, or the array itself if it already contains floats."""
+    """Return the result of ``checked_numbers``, or the array itself if it already has floats."""
     if type(values) is np.ndarray and values.dtype is FLOAT and values.ndim:
         return values
     return checked_numbers(values, name)

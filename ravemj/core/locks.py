@@ -119,7 +119,7 @@ def end() -> None:
 
 
 def _end_holder(lock: StateLock) -> None:
-    """Raise ``SystemExit`` in the thread that holds a lock, as soon as that thread leaves C code."""
+    """Raise ``SystemExit`` in the thread that holds a lock, once it has left C code."""
     owner = re.search(r"owner=(\d+)", repr(lock))
     if owner:
         holder = ctypes.c_ulong(int(owner[1]))

@@ -117,7 +117,7 @@ def added_files(path: AnyPath) -> Generator[Path]:
 
 
 def _move_all(source: Path, target: Path) -> None:
-    """Move the files of a folder into another folder, all or none."""
+    """Move the files of a folder into another one, all or none."""
     is_new = not target.exists()
     target.mkdir(exist_ok=True)
     made: list[Path] = []
@@ -158,7 +158,7 @@ def _real(path: AnyPath) -> Path:
 
 
 def _foreign_entries(folder: Path, patterns: Collection[str]) -> Iterator[str]:
-    """Yield the entries of a folder and its subfolders that match none of the patterns."""
+    """Yield the entries of a folder that match none of the patterns, directly or in a subfolder."""
     folders = {pattern.rpartition("/")[0] for pattern in patterns}
     for entry in folder.rglob("*"):
         name = entry.relative_to(folder).as_posix()
@@ -173,7 +173,7 @@ def _foreign_entries(folder: Path, patterns: Collection[str]) -> Iterator[str]:
 
 @contextmanager
 def _temporary(path: AnyPath) -> Generator[Path]:
-    """Yield a temporary path in the target's folder; remove a file or folder left there at the end."""
+    """Yield a temporary path beside a target; a file or folder left there is removed at the end."""
     temporary = _real(path).with_name(f".ravemj-{_realm()}-{os.getpid()}-{os.urandom(4).hex()}.tmp")
     _remove_left_over(temporary.parent)
     remove = in_this_process(lambda: _remove(temporary))
@@ -198,7 +198,7 @@ def temporary_folder() -> Generator[str]:
 
 @cache
 def _realm() -> str:
-    """Return eight hexadecimal digits that identify the namespace of process ids: the machine and its container."""
+    """Return eight hexadecimal digits for the namespace of process ids: the machine, and the container on it."""
     import hashlib  # noqa: PLC0415 - slow to import
 
     try:
@@ -209,7 +209,7 @@ def _realm() -> str:
 
 
 def _remove_left_over(folder: Path) -> None:
-    """Remove temporary files and folders that killed processes of this user left behind."""
+    """Remove temporary files and folders of the user's killed processes."""
     if os.name != "posix":  # there is no harmless way to ask for a process
         return
     for path in folder.glob(f".ravemj-{_realm()}-*"):

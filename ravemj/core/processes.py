@@ -22,7 +22,7 @@ _ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VE
 
 
 def _begin() -> None:
-    """Initialize a worker process: ignore Ctrl-C, which the driver handles, and warnings, which the driver showed."""
+    """Initialize a worker: it ignores Ctrl-C, which the driver handles, and warnings, which the driver has shown."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("ignore", RavemjWarning)
     threading.Thread(target=_end_with_driver, daemon=True).start()
@@ -36,7 +36,7 @@ def _end_with_driver() -> None:
 
 
 class _Worker:
-    """Worker process in a pool of its own; it imports the script's main module only if ``needs_main``."""
+    """A process in its own pool; it runs the main module of the script only if ``needs_main``."""
 
     def __init__(self, needs_main: bool) -> None:
         self.needs_main = needs_main
@@ -113,7 +113,7 @@ def _restarted(worker: _Worker) -> _Worker:
 
 @contextlib.contextmanager
 def _other_main() -> Generator[None]:
-    """Prevent processes started within the block from importing the main module.
+    """Prevent processes that start within the block from importing the main module.
 
     Importing it would repeat what a script does without ``if __name__ == "__main__":``, and fails for Python 2.
     """

@@ -13,7 +13,7 @@ import sys
 
 
 def _is_command() -> bool:
-    """Return whether this process is ``ravemj …`` or ``python -m ravemj …``; works before the command's code runs."""
+    """Return whether this process is ``ravemj …`` or ``python -m ravemj …``; valid before the command's code runs."""
     program = sys.argv[0] if sys.argv else ""
     if program == "-m":  # until Python has found the module to run, for which it imports the package
         return sys.orig_argv[-len(sys.argv)] in ("ravemj", "-mravemj")

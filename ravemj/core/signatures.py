@@ -75,7 +75,7 @@ def _made(function: FunctionType, evaluated: inspect.Signature | None) -> inspec
 
 
 def _annotations(function: FunctionType) -> dict[str, str]:
-    """Return the annotations of parameters and result (``return``) by name; empty if the source is not available."""
+    """Return the annotations of a function's arguments and result; none if its source is not available."""
     definition = _definition(function)
     if not isinstance(definition, ast.FunctionDef):
         return {}
@@ -85,7 +85,7 @@ def _annotations(function: FunctionType) -> dict[str, str]:
 
 
 def _fields(constructor: FunctionType) -> dict[str, str]:
-    """Return the annotations of a dataclass's fields by name, given its generated ``__init__``."""
+    """Return the annotations of a dataclass's fields, given its generated constructor."""
     try:
         kind = pkgutil.resolve_name(f"{constructor.__module__}:{constructor.__qualname__.rpartition('.')[0]}")
     except (AttributeError, ImportError, ValueError):

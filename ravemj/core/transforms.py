@@ -142,7 +142,7 @@ def normalize(wxyz: Wxyz) -> Wxyz:
 
 
 _SHORTEST = 1e-290
-"""Length of a vector below which components may be subnormal numbers."""
+"""Length of a vector below which its components may be subnormal."""
 
 
 def not_subnormal(vector: Vec3) -> Vec3:

@@ -80,14 +80,14 @@ def _read_model(path: str, wanted: str, given: Attributes, metre: float, access:
 
 
 def _read_mjcf(path: str, content: bytes, given: Attributes, access: FileAccess) -> Reading:
-    """Read MJCF by the engine, since only MuJoCo can compile it."""
+    """Read MJCF by the engine: only MuJoCo can compile it."""
     from ravemj.engine.mjcf_reading import read_mjcf  # noqa: PLC0415 - it needs MuJoCo
 
     return read_mjcf(path, content, given, access)
 
 
 def _read_xacro(path: str, given: Attributes, access: FileAccess) -> Reading:
-    """Expand a xacro file and read the resulting URDF; line numbers in messages refer to the expanded text."""
+    """Read the URDF to which a xacro file expands; line numbers in messages are those of the expanded text."""
     try:
         content = expand(path, given, access)
     except SourceError as error:
@@ -165,7 +165,7 @@ class _NameSuffixes:
         self._next: dict[str, int] = {}
 
     def give(self, name: str) -> str:
-        """Reserve and return a unique name: ``name``, or ``name`` with a numeric suffix if it is in use."""
+        """Reserve and return a unique name: the given one, with a numeric suffix if it is in use."""
         unused = name
         while unused in self._next:
             unused = f"{name}{self._next[name]}"
@@ -175,7 +175,7 @@ class _NameSuffixes:
 
 
 def _without_scheme(uri: str) -> str:
-    """Return the path of a ``file:`` or ``openrave:`` URI; return any other string unchanged."""
+    """Return the path of a ``file:`` or ``openrave:`` URI; other names are unchanged."""
     scheme, separator, rest = uri.partition(":")
     if not separator or scheme.lower() not in {"file", "openrave"}:
         return uri

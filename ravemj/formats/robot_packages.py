@@ -21,7 +21,7 @@ INSTALL = 'pip install "ravemj[robots]" adds robots by name'
 _DESCRIPTIONS, _MENAGERIE = "robot_descriptions", "mujoco_menagerie"
 _SUFFIX = "_description"
 _FILES = ("MJCF_PATH", "URDF_PATH", "XACRO_PATH")
-"""Variables in a module of ``robot_descriptions`` that hold the model's path, in order of preference."""
+"""Variables with the model's path in a module of ``robot_descriptions``, in order of preference."""
 
 _LIKENESS = 0.7
 
@@ -163,7 +163,7 @@ class _Assignments(ast.NodeVisitor):
             self.texts[target.id] = text
 
     def _text(self, value: ast.expr) -> str | None:
-        """Evaluate an expression for a path; return None if the expression is not supported."""
+        """Evaluate an expression for a path; None if it is not supported."""
         if isinstance(value, ast.Constant):
             return str(value.value)
         if isinstance(value, ast.Name):

@@ -80,7 +80,7 @@ def _largest(parts: Sequence[float]) -> int:
 
 
 def _unit(parts: Sequence[float]) -> tuple[float, ...]:
-    """Round a unit vector; compute its largest component from the others, so that normalizing it changes nothing."""
+    """Round a unit vector; its largest component is computed from the others, so that normalizing changes nothing."""
     rounded = [_snapped(round(part, _UNIT_DECIMALS)) for part in parts]
     index = _largest(parts)
     rest = sum(part * part for place, part in enumerate(rounded) if place != index)

@@ -27,7 +27,7 @@ _RAYS = {_Type.Ray4D, _Type.TranslationDirection5D}
 _PLACES = {_Type.Translation3D, _Type.Lookat3D}
 _PLANAR = {_Type.TranslationXY2D, _Type.TranslationXYOrientation3D}
 _WITH_ANGLE = frozenset(kind for kind in GOAL_TYPES if "AxisAngle" in kind.name)
-"""Types whose first value is an angle to or about an axis of the arm's base."""
+"""Types whose first value is an angle to or about an axis of the arm's base frame."""
 _ABOUT_AXIS = frozenset(kind for kind in _WITH_ANGLE if "Norm" in kind.name)
 _WITH_DIRECTION = {_Type.Direction3D, *_RAYS}
 """Types whose first three values are a direction."""
@@ -36,7 +36,7 @@ _WITH_POINT = {*_PLACES, *_RAYS, *_WITH_ANGLE, _Type.TranslationLocalGlobal6D}
 _ANGLE_WEIGHT = 0.4
 """OpenRAVE's weight of a squared angle [rad^2] relative to a squared distance [m^2] in distances between goals."""
 _UNIT = 0.01
-"""Tolerance of the squared length of a unit vector."""
+"""Tolerance of the squared length of a direction."""
 
 
 def goal_transform(value: ArrayLike, name: str) -> Floats:
@@ -244,7 +244,7 @@ def _wxyz(values: Floats) -> Wxyz:
 
 
 def _angle_about_z(pose: Pose) -> float:
-    """Return the angle [rad] of the twist about z of a pose's rotation."""
+    """Return the rotation angle about z of a pose (the twist of its rotation) [rad]."""
     return 2 * math.atan2(pose.wxyz[3], pose.wxyz[0])
 
 
@@ -253,7 +253,7 @@ def _wrapped(angle: float) -> float:
 
 
 def _nearest_point(ray: Floats) -> Floats:
-    """Return the point of a line nearest to the origin; ``ray`` is direction and point."""
+    """Return the point of a ray, given by direction and point, nearest to the origin."""
     direction, point = ray[:3], ray[3:]
     return point - direction * (direction @ point)
 
@@ -263,7 +263,7 @@ def _squared_length(vector: Floats) -> float:
 
 
 def _angle(a: Floats, b: Floats) -> float:
-    """Return the angle between two unit vectors [rad], by W. Kahan's formula, which is accurate for small angles."""
+    """Return the angle between two unit vectors [rad] (W. Kahan's formula, exact for small angles)."""
     return 2 * math.atan2(float(np.linalg.norm(a - b)), float(np.linalg.norm(a + b)))
 
 

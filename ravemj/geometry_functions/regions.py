@@ -15,13 +15,13 @@ AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 
 _TURN = 2 * math.pi
 _LOCK = 1e-7
-"""Cosine of the pitch below which the orientation is treated as gimbal lock."""
+"""Cosine of the pitch below which roll and yaw rotate about one axis."""
 
 _LENGTH, _PART, _ANGLE = 1e-9, 1e-6, 1e-6
 """Tolerances of a membership test: lengths [m], lengths relative to those involved, and angles [rad]."""
 
 _POINT_SHARE = 0.1
-"""Minimum weight of a region in a union, relative to the mean width, so that point regions are sampled too."""
+"""Minimum weight of a region in a union, relative to the mean width, so that point regions are sampled, too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,7 +222,7 @@ def _beyond(value: float, lower: float, upper: float) -> float:
 
 
 def _split(total: float, side: float, rolls: tuple[float, float], yaws: tuple[float, float]) -> tuple[float, float]:
-    """Return roll and yaw nearest to their bounds with roll - ``side`` * yaw = ``total``, for a pitch of +-pi/2."""
+    """Return the roll and yaw nearest to their bounds with ``roll - side * yaw = total``, at a pitch of +-pi/2."""
     wide, wide_yaw = rolls[1] - rolls[0], yaws[1] - yaws[0]
     first = rolls[0] - side * (yaws[1] if side > 0 else yaws[0])
     last = first + wide + wide_yaw
@@ -277,7 +277,7 @@ def _lean_rates(D: Floats) -> Floats:
 
 
 def _cosine_integral(angle: float) -> float:
-    """Return the integral of |cos| from 0 to ``angle``."""
+    """Return the integral of |cos| from 0 to an angle."""
     turns = math.floor(angle / math.pi + 0.5)
     return 2 * turns + math.sin(angle - turns * math.pi)
 

@@ -17,7 +17,7 @@ def halton(first: int, count: int, dimensions: int) -> Floats:
 
 
 def _radical_inverse(places: Ints, base: int) -> Floats:
-    """Return the radical inverses of ``places`` (van der Corput sequence): their digits mirrored at the radix point."""
+    """Return the radical inverse of indices: their digits mirrored at the radix point."""
     mirrored, weight, rest = np.zeros(len(places)), 1.0 / base, places.copy()
     while rest.any():
         mirrored += rest % base * weight

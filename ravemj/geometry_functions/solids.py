@@ -17,7 +17,7 @@ _BOX_TRIANGLES = (
 )  # fmt: skip
 
 _FINEST = 10
-"""Maximum number of subdivisions of a sphere's triangles; it gives 20 million triangles."""
+"""Maximum number of subdivisions of a sphere's triangles, which gives 20 million triangles."""
 
 _GOLDEN = (1 + 5**0.5) / 2
 _ICOSAHEDRON = [

@@ -105,7 +105,7 @@ class SimulationRenderer:
         return self._measured(form, lambda renderer, data: renderer.segment(data, camera))
 
     def _measured(self, form: Format, measure: Callable[[Renderer, mujoco.MjData], Drawn]) -> Drawn:
-        """Call ``measure`` with this thread's renderer and a copy of the present state; return its result."""
+        """Return ``measure(renderer, data)`` for this thread's renderer and the present state."""
         with self._simulation.lock:
             compiled = self._simulation.compiled()
             renderer = self._current(form)

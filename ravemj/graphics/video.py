@@ -175,7 +175,7 @@ def _write_video(frames: Iterator[Frame], temporary: Path, rate: Fraction, kind:
 
 
 def _write_mpg(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
-    """Write an MPEG-2 video; it allows few frame rates, so frames are repeated at its most common rate."""
+    """Write MPEG-2 at its most common frame rate, repeating frames, since it allows few rates."""
 
     def repeated() -> Iterator[Frame]:
         for number, frame in enumerate(frames):
@@ -252,7 +252,7 @@ def _arriving(handed_over: "Handover[Frame | None]", stopped: Flag) -> Iterator[
 def _overlap(
     frames: Iterable[Frame], encode: Callable[[Iterator[Frame]], None], on_frame: Callable[[int], None] | None
 ) -> None:
-    """Encode in a second thread while this thread draws; an exception in either stops both."""
+    """Encode in a second thread while this thread draws; an exception in either ends both."""
     handed_over = Handover["Frame | None"](_FRAMES_BETWEEN_THREADS)
     ended, stopped = Flag(), Flag()
     errors: list[BaseException] = []

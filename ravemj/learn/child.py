@@ -20,10 +20,10 @@ from ravemj.learn.mistakes import recognized
 Status: TypeAlias = Literal["solved", "wrong", "error", "untouched"]
 
 _WIDTH = 200
-"""Maximum length of an answer as text."""
+"""Maximum length of the text of an answer."""
 
 _MEMORY = 4 << 30
-"""Memory limit of a process that runs a student's code [bytes]."""
+"""Memory limit of a process that runs students' code [bytes]."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -174,7 +174,7 @@ def _defined(path: Path, text: str, function: str) -> dict[str, object]:
 
 
 def _has_hole(tree: ast.Module, name: str) -> bool:
-    """Return whether the function ``name`` still contains the placeholder ``...`` as a statement or value."""
+    """Return whether a function still contains the placeholder ``...``, alone or as a value."""
     functions = (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) and node.name == name)
     values = (
         node

@@ -12,7 +12,7 @@ from ravemj.learn.course import Course, Exercise
 from ravemj.learn.running import run_check
 
 _FORMULAS = ("=", "+", "-", "@", "\t", "\r")
-"""First characters by which spreadsheets recognize formulas."""
+"""First characters of cells that spreadsheets interpret as formulas."""
 
 
 @dataclasses.dataclass(frozen=True)

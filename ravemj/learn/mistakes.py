@@ -11,7 +11,7 @@ from ravemj.learn.check import Arguments, Check, Floats
 Transformation = Callable[[Floats], Floats]
 
 _MOST_PERMUTED = 4
-"""Number of joints up to which all orders are tried; with more joints, only the reversed order."""
+"""Maximum number of joints for which all orders are tried; for more joints, only the reversed order is tried."""
 
 _CONJUGATE = np.array([1.0, -1, -1, -1])
 _TRANSPOSED = "The rotation is transposed: R_world_link turns link coordinates into world ones."

@@ -81,7 +81,7 @@ def answer_scene(check: Check, verdict: Verdict) -> Shown:
 
 
 def _camera(env: Environment, points: list[Floats], *, flat: bool) -> Floats:
-    """Return ``T_world_camera`` of a view of all robots and points; from above if ``flat``."""
+    """Return ``T_world_camera`` of a view of all robots and points; planar answers are seen from above."""
     center, radius = env.renderer.bounding_sphere() if env.GetBodies() else (np.zeros(3), 0.0)
     corners = np.array([np.zeros(3), center, *points])
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -112,7 +112,7 @@ def save_picture(check: Check, verdict: Verdict, output: Path) -> None:
 
 
 def _add_robots(env: Environment, scene: Scene, check: Check, given: Floats, right: Floats) -> Floats:
-    """Add a scene's robot and, for joint values, a copy at the right ones; return the pose of the answer's frame."""
+    """Add a scene's robot and, for joint values, a copy at the right values; return the pose of the answer's frame."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)
         env.Load(model_path(scene.model) if scene.model in SHIPPED_MODELS else scene.model)

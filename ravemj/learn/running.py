@@ -55,7 +55,7 @@ def run_check(exercise: Exercise, file: Path, seconds: float = SECONDS, seed: in
 
 
 class _Output:
-    """Runs a process until its end or a time limit; stores the beginning of its output."""
+    """Runs a process to its end or to a time limit, and stores the beginning of its output."""
 
     def __init__(self, words: list[str], folder: Path, seconds: float) -> None:
         variables = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1"}
@@ -90,7 +90,7 @@ class _Output:
         self._process.wait()
 
     def reason(self, file: Path, seconds: float) -> str:
-        """Return the reason why the process gave no verdict."""
+        """Return the reason why there is no verdict."""
         if "Timeout (" in self.errors:
             name = str(file).encode("ascii", "backslashreplace").decode()  # as faulthandler writes it
             last_place = re.search(rf'File "{re.escape(name)}", line (\d+)', self.errors)
@@ -102,7 +102,7 @@ class _Output:
 
 
 class _Reader:
-    """Reads a stream in a thread until its end; stores the beginning."""
+    """Reads a stream to its end in a thread, and stores its beginning."""
 
     def __init__(self, stream: IO[bytes]) -> None:
         self._kept = b""

@@ -51,7 +51,7 @@ class Connections:
 
     @cached_property
     def _placing(self) -> dict[int, int]:
-        """Joint index by link, for each link that is the child of a joint in the kinematic tree."""
+        """Index of the parent joint of each link that has one in the kinematic tree."""
         return {joint.child: index for index, joint in enumerate(self.joints) if joint.places_child}
 
     def between(self, link: int) -> set[int]:
@@ -87,7 +87,7 @@ class Connections:
 
 _MOST_BODIES = 16
 _known: dict[tuple[int, int, int], Connections] = {}
-"""Cache by identity of the joints; limited to few bodies, since it keeps them alive."""
+"""Cache by the identity of the joints, limited to few bodies, since it keeps them alive."""
 
 
 def connections(body: KinBody) -> Connections:

@@ -37,7 +37,7 @@ CONFIGURATIONS = 5
 
 _FARTHEST = 10.0  # range of random values of joints without limits [rad or m]
 _AXIS_FIELDS = tuple(field.name for field in fields(Axis) if field.name not in {"direction", "reference"})
-"""Fields of axes to compare: all but the direction, which some joints lack, and the reference, which is derived."""
+"""Compared fields of axes: all except the direction, which some joints lack, and the reference, which is derived."""
 
 
 class Difference(NamedTuple):
@@ -219,7 +219,7 @@ class _Comparison:
             yield from self._near(part, quantity, first, second)
 
     def _configurations(self, part: str, first: KinBody, second: KinBody) -> Iterator[Difference]:
-        """Compare link poses in random configurations; yield only the largest difference."""
+        """Compare the poses of all links in random configurations; report the largest difference."""
         random = np.random.default_rng(0)
         differences: list[Difference] = []
         for _ in range(CONFIGURATIONS if first.joints else 0):
@@ -279,7 +279,7 @@ def poses_in(body: KinBody, dof_values: Sequence[float]) -> list[Pose]:
 
 
 def _random_value(axis: Axis, random: np.random.Generator) -> float:
-    """Return a random axis value within the limits and, if these allow it, within +-``_FARTHEST``."""
+    """Return a random value within the limits, and within ``_FARTHEST`` of 0 if they allow it."""
     low, high = (min(max(end, axis.lower), axis.upper) for end in (-_FARTHEST, _FARTHEST))
     return float(random.uniform(low, high))
 
@@ -293,7 +293,7 @@ def _types(geometries: Sequence[Geometry]) -> list[str]:
 
 
 def _kind(sensor: AttachedSensor) -> str | None:
-    """Return the canonical name of a sensor's type, which file formats spell differently."""
+    """Return the canonical name of a sensor type, which formats spell differently."""
     kind = sensor_kind(sensor.type or "")
     return sensor.type if kind is None else kind.name
 

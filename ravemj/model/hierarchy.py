@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ravemj.core.graphs import depth_first, topological_order
 
 _UNREACHED = -1
-"""Depth of a link without a path to link 0, as OpenRAVE compares it."""
+"""Depth that OpenRAVE uses for a link without path to link 0, when comparing links."""
 
 
 _HIGHEST = (sys.maxsize, sys.maxsize)
@@ -73,11 +73,11 @@ def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
 
 
 def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -> list[int]:
-    """Return the joint indices in the order in which OpenRAVE evaluates the joints.
+    """Return the joints in the order in which OpenRAVE evaluates them.
 
     The level of a joint is the depths of its links, the smaller one first. A joint waits for all joints on lower
-    levels, except that a joint at a static link does not wait for other joints at static links. Ready joints are queued
-    in the order of the file.
+    levels, except that a joint at a static link does not wait for others at static links. Ready joints are queued in
+    the order of the file.
     """
     by_level = sorted(range(len(levels)), key=lambda index: levels[index])
     unfinished, free = deque(by_level), deque(index for index in by_level if not grounded[index])
@@ -99,7 +99,7 @@ def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -
 
 
 def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Sequence[int]) -> tuple[int, ...]:
-    """Sort the joints in ``placing``, which place links, so that each follows the joint that places its parent link."""
+    """Sort the joints that place links, so that each follows the joint that places its parent link."""
     placed_by = {ends[index][1]: index for index in placing}
 
     def carrying(index: int) -> list[int]:
@@ -139,7 +139,7 @@ def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
 
 
 def _parents(neighbours: Sequence[Sequence[int]]) -> list[list[int]]:
-    """Return for each link the neighbours to which a path from link 0 leads that does not pass the link.
+    """Return for each link the neighbours that a path from link 0 reaches without passing the link.
 
     In the depth-first search tree from link 0, neighbours are ancestors or descendants of a link. The ancestors always
     have such a path; the descendants have one unless the link is an articulation point that separates them from link 0.
@@ -161,7 +161,7 @@ def _parents(neighbours: Sequence[Sequence[int]]) -> list[list[int]]:
 
 
 def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Sequence[int], *, has_dofs: bool) -> bool:
-    """Return whether a joint's second listed link is its parent; link 0 is never a child (gap-05, gap-06, gap-07)."""
+    """Return whether the second listed link is the parent; link 0 is never a child (gap-05, gap-06, gap-07)."""
     first, second = links
     if static_links[second]:  # also in bodies without DOFs
         return not static_links[first] and first != 0
@@ -173,7 +173,7 @@ def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Se
 def _hangs_on(
     link: int, other: int, placed_by: dict[int, int], ends: Sequence[tuple[int, ...]], carriers: set[int]
 ) -> bool:
-    """Return whether ``link`` is ``other`` or a descendant of it; ``carriers`` are the links that have children."""
+    """Return whether ``link`` is ``other`` or its descendant; ``carriers`` are the links that have children."""
     while link != other and other in carriers and link in placed_by:
         link = ends[placed_by[link]][0]
     return link == other

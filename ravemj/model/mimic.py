@@ -95,7 +95,7 @@ def leaders(expression: "Expression") -> tuple[int, ...]:
 
 
 def _followed(index: int, mimics: "dict[int, Expression]") -> set[int]:
-    """Return the joints on which the mimic joint ``index`` depends, directly or indirectly."""
+    """Return the joints on which mimic joint ``index`` depends, directly or indirectly."""
     pending, followed = [index], set[int]()
     while pending:
         current = pending.pop()

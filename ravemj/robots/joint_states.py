@@ -185,7 +185,7 @@ def follow_rosbridge(url: str, topic: str, period: float, states: JointStates, s
 
 
 def _receive(receive: Callable[[float], str | bytes], topic: str, states: JointStates, say: Say) -> None:
-    """Receive joint state messages until the connection is lost."""
+    """Receive messages until the connection is lost."""
     is_silent = False
     while True:
         try:

@@ -241,7 +241,7 @@ _running: set[Stream] = set()
 
 
 class _StopAll:
-    """Handler of Ctrl-C that stops all streams, then calls the previous handler."""
+    """Handler of Ctrl-C: it stops all streams, and calls the previous handler."""
 
     def __init__(self, previous: object) -> None:
         self._previous = previous

@@ -22,7 +22,7 @@ Told = Callable[[ShardOutcome], object]
 _Result = TypeVar("_Result")
 
 _MOST_OUTPUT_ERRORS = 3
-"""Number of consecutive output errors that ends a sweep."""
+"""Number of consecutive output errors after which a sweep ends."""
 
 _PATIENCE = 0.5  # s, between checks of the time limit
 
@@ -129,7 +129,7 @@ class Driver:
         self._running[future] = task, time.monotonic()
 
     def _finished(self) -> list[ShardTask]:
-        """Wait until a shard ends; return the shards to be computed again."""
+        """Wait until shards end; return the shards to be computed again."""
         wait([*self._running], timeout=_PATIENCE, return_when=FIRST_COMPLETED)
         if any(future.done() for future in self._running):
             return self._collect()
@@ -137,7 +137,7 @@ class Driver:
         return []
 
     def _collect(self) -> list[ShardTask]:
-        """Record the outcomes of shards that ended; return the shards to be computed again."""
+        """Collect the outcomes of shards that ended; return the shards to be computed again."""
         again: list[ShardTask] = []
         for future in [future for future in self._running if future.done()]:
             task, _ = self._running.pop(future)

@@ -19,7 +19,7 @@ FORMAT = 1
 _OURS = {MANIFEST, SHARDS, FAILED}
 
 _DIGESTS = {"scene": "the model or its state", "function": "the text of the function", "items": "the array of items"}
-"""Descriptions, for messages, of the digests in the manifest."""
+"""Descriptions of the digests in the manifest, for messages."""
 
 
 class Failure(NamedTuple):

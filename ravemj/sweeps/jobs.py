@@ -24,7 +24,7 @@ BLOCK = 1000
 """Default number of items that share a random generator."""
 
 _UNLIMITED = 1e3
-"""Limit above which a joint is treated as continuous; its values are sampled in [-pi, pi]."""
+"""Limit above which joints are treated as continuous; their values are sampled in [-pi, pi]."""
 
 
 _ITERATIONS = 4000
@@ -134,7 +134,7 @@ def _tool_poses(work: Work, values: Floats) -> Floats:
 
 
 def _goals(work: Work, random: np.random.Generator, count: int) -> Floats:
-    """Draw IK goals that the arm can reach while the other joints keep their values."""
+    """Draw goals that the arm can reach with the other joints at their present values."""
     arm = work.tool.GetArmIndices()
     values = np.tile(work.mover.GetDOFValues(), (count, 1))
     values[:, arm] = joint_values(work, random, count)[:, arm]

@@ -33,11 +33,11 @@ Model = str | os.PathLike[str] | Environment | Robot
 Items = ArrayLike | str | os.PathLike[str]
 
 _SECONDS = 20.0
-"""Target duration of a shard [s], unless the shard would be too large or there would be too few shards."""
+"""Target duration of a shard [s], unless the shard would be too large or shards too few."""
 _BYTES = 100e6
 """Maximum size of a shard [bytes]."""
 _EACH = 4
-"""Minimum number of shards per process, so that all processes finish at about the same time."""
+"""Minimum number of shards per process, so that all processes end at about the same time."""
 
 
 def sweep(  # noqa: PLR0913 - keyword arguments
@@ -169,7 +169,7 @@ def versions() -> dict[str, str]:
 
 
 def _plain(value: object) -> object:
-    """Convert an option to JSON data; a function to its name and source digest."""
+    """Convert an option to JSON data; a function to its name and the digest of its source."""
     if callable(value):
         return f"{value.__module__}:{value.__qualname__} {source_digest(value)}"
     return json.loads(json.dumps(np.asarray(value).tolist()))

@@ -145,7 +145,7 @@ def state_restored(env: Environment) -> Generator[None]:
 
 
 def _environment(content: bytes) -> Environment:
-    """Unpickle an environment; return the same object if an earlier shard already unpickled it."""
+    """Unpickle an environment, or return the one already unpickled for an earlier shard of the sweep."""
     key = hashlib.sha256(content).hexdigest()
     with _lock:
         known = _environments.get(key)

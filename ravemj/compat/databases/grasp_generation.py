@@ -292,14 +292,14 @@ def generate(
 
 
 class _GraspFilter:
-    """Calls the user's function once for each grasp in the result files (shards) of a sweep."""
+    """Filter that calls the user's function once for each grasp in the result files (shards) of the sweep."""
 
     def __init__(self, check: Check | None, parts: Path) -> None:
         self._check, self._parts = check, parts
         self.reasons: dict[Path, NDArray[Any]] = {}
 
     def update(self) -> None:
-        """Apply the user's function to the valid grasps in result files written since the last call."""
+        """Call the user's function with the valid grasps in result files written since the last call."""
         if self._check is None or not (self._parts / MANIFEST).exists():
             return
         for path in Sweep.open(self._parts).files:
@@ -360,7 +360,7 @@ def forget(parts: Path) -> None:
 
 @contextmanager
 def _copy(model: GraspUse, alone: bool) -> Generator[Environment]:
-    """Yield a copy of the environment; if ``alone``, only with the robot and the target."""
+    """Yield a copy of the environment; if ``alone``, it contains only the robot and the target."""
     env: Environment = pickle.loads(pickle.dumps(model.env))
     try:
         names = {model.robot.GetName(), model.target.GetName()}

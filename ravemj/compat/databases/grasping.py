@@ -340,7 +340,7 @@ class GraspingModel(ValidGrasps):
         spheredelta: float | None = None,
         normalanglerange: float = 0,
     ) -> Path:
-        """Generate grasps; return the folder with the result files of all candidates."""
+        """Generate grasps, and return the folder with the files of the candidates."""
         from ravemj.compat.databases import grasp_generation as generation  # noqa: PLC0415 - imports much
 
         self._check_hand()
@@ -418,7 +418,7 @@ class GraspingModel(ValidGrasps):
 
 
 def _rows(values: ArrayLike, width: int, name: str) -> Floats:
-    """Convert an argument of ``generate`` to shape (n, width); ``name`` is for messages."""
+    """Convert an argument of ``generate`` to an array of shape (n, width)."""
     array = np.asarray(values, dtype=float)
     if array.size % width or (array.ndim > 1 and array.shape[-1] != width) or not np.isfinite(array).all():
         mistake = f"have shape {array.shape}" if np.isfinite(array).all() else "are not finite"

@@ -27,7 +27,7 @@ COMPILING = "compiling of solvers of inverse kinematics"
 _LOG = logging.getLogger("ravemj")
 _UNCHECKED = IkFilterOptions.IgnoreSelfCollisions | IkFilterOptions.IgnoreCustomFilters
 _WRONG = 1e-8
-"""Squared distance from the goal above which a solution counts as wrong."""
+"""Squared distance from the goal above which a solution is wrong."""
 
 
 @lacking(COMPILING, "getsourcefilename(read outputlang) show(delay options forceclosure) @getcompiler()")

@@ -73,7 +73,7 @@ class Helper(ApiObject):
     ) -> Trajectory | str:
         """Execute a motion unless ``execute`` is False; return it as trajectory or text if requested, else ``reply``.
 
-        The reply is that of OpenRAVE's module: an empty string, or "1" for motions to tool poses; never None.
+        The reply is that of OpenRAVE's module: an empty text, or "1" for motions to poses of the tool; never None.
         """
         if execute is None or execute:
             self._manipulation.execute(traj)
@@ -89,7 +89,7 @@ class Helper(ApiObject):
         outputfinal: bool | None,
         outputtrajobj: bool | None,
     ) -> tuple[Floats | None, Trajectory | str | None]:
-        """Execute a motion unless ``execute`` is False; return final joint values and motion, None if not requested."""
+        """Execute a motion unless ``execute`` is False; return final values and motion, each None if not requested."""
         final, traj = motion
         return final if outputfinal else None, self._done(traj, execute, outputtraj, outputtrajobj) or None
 

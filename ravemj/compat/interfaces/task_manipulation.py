@@ -162,7 +162,7 @@ class TaskManipulation(Helper):
         return self._pair(motion, execute, outputtraj, outputfinal, outputtrajobj)
 
     def _of_gripper(self, name: str, numbers: ArrayLike | None) -> Floats | None:
-        """Convert an argument to an array with one value per gripper joint; return None if it is None."""
+        """Convert an argument to an array with a value for each gripper joint; None stays None."""
         if numbers is None:
             return None
         manip = self.robot.GetActiveManipulator()

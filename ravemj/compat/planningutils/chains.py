@@ -65,7 +65,7 @@ def GetDHParameters(body: KinBody) -> list[DHParameter]:
 
 
 def _before(body: KinBody, link: int, index_of_link: dict[int, int]) -> int:
-    """Return the ``DHParameter`` index of the nearest joint before a link; -1 if there is none."""
+    """Return the index of the ``DHParameter`` of the nearest joint before a link; -1 if there is none."""
     chain = body.GetChain(0, link, returnjoints=False)
     moved = [index_of_link[joint_.GetIndex()] for joint_ in chain if joint_.GetIndex() in index_of_link]
     return moved[-1] if moved else -1

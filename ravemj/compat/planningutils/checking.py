@@ -28,7 +28,7 @@ _CHECK = "DynamicsCollisionConstraint"
 _LINES = "constraints of accelerations, torques and perturbations along lines"
 
 _MOST_SAMPLES = 10_000_000
-"""Maximum number of samples of a trajectory; ten times as many would exceed the memory."""
+"""Maximum number of samples of a trajectory; ten times as many would exhaust the memory."""
 
 
 def VerifyTrajectory(

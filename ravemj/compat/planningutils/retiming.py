@@ -306,7 +306,7 @@ def _planned(traj: Trajectory, params: Callable[[], PlannerParameters], name: st
 
 
 def _of_one_waypoint(traj: Trajectory) -> PlannerStatus:
-    """Add time to a trajectory with a single waypoint, for which OpenRAVE runs no planner."""
+    """Add the time to a trajectory with a single waypoint, for which OpenRAVE runs no planner."""
     spec = traj.GetConfigurationSpecification()
     spec.AddDeltaTimeGroup()
     ConvertTrajectorySpecification(traj, spec)
@@ -314,7 +314,7 @@ def _of_one_waypoint(traj: Trajectory) -> PlannerStatus:
 
 
 def _retimer(traj: Trajectory) -> str:
-    """Return OpenRAVE's default retimer for the interpolation of joint values or, without these, of poses."""
+    """Return the name of OpenRAVE's default retimer for the interpolation of the joint values, or else of the poses."""
     groups = checked_kind(traj, Trajectory, "trajectory").GetConfigurationSpecification().GetGroups()
     of_joints = [group.interpolation for group in groups if group.name.startswith("joint_values")]
     of_poses = [

@@ -41,7 +41,7 @@ def _filter(function: Callable[[Any], Any] | None, sequence: Any) -> Any:
 
 
 def _map(function: Callable[..., Any] | None, *sequences: Iterable[Any]) -> list[Any]:
-    """Return the list of Python 2's ``map``, which pads shorter sequences with None."""
+    """Return a list like Python 2's ``map``, which pads shorter sequences with None."""
     rows = list(sequences[0]) if len(sequences) == 1 else list(itertools.zip_longest(*sequences))
     if function is None:
         return rows

@@ -23,7 +23,7 @@ _ENVIRONMENT = [
         os.path.dirname(os.path.dirname(__file__)),
     )
 ]
-"""Folders whose modules are never translated: those of installed packages and of ravemj."""
+"""Folders that are never translated: those of installed packages, and ravemj's."""
 
 
 def execute(source: bytes, path: str, names: dict[str, Any]) -> None:
@@ -62,7 +62,7 @@ def is_python2(path: str) -> bool:
 
 
 def _compile(source: bytes, path: str) -> CodeType | None:
-    """Compile a file as Python 3; return None if that fails."""
+    """Compile a file as Python 3; None if that fails."""
     try:
         return compile(source, path, "exec", dont_inherit=True)
     except (SyntaxError, ValueError):
@@ -98,7 +98,7 @@ class _SourceFinder:
         return spec
 
     def _is_old(self, path: str) -> bool:
-        """Return whether to treat a module as Python 2: it belongs to the script, or is invalid in Python 3."""
+        """Return whether a module is Python 2: it belongs to the script, or is invalid in Python 3."""
         path = os.path.realpath(path)
         if any(_is_in(path, folder) for folder in _ENVIRONMENT):
             return False
@@ -119,7 +119,7 @@ def _compiles(path: Path) -> bool:
 
 
 class _Loader(SourceFileLoader):
-    """Loader that translates a module; it writes no byte code, since Python 3 would load that."""
+    """Loader that translates a module; it writes no byte code, which Python 3 would use."""
 
     def exec_module(self, module: ModuleType) -> None:
         execute(self.get_data(self.path), self.path, vars(module))

@@ -60,7 +60,7 @@ def _floor(x: float) -> float:
 
 
 def _of_items(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a function of numbers to accept arrays with one element, too."""
+    """Wrap a function of numbers so that it also accepts arrays of one element."""
     return lambda *args: function(*map(item, args))
 
 

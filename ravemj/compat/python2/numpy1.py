@@ -57,7 +57,7 @@ def _alen(a: Any) -> int:
 
 
 def _array(object: Any, dtype: Any = None, copy: bool = True, *args: Any, **options: Any) -> Any:
-    """Create an array as in NumPy 1: ``copy=False`` may still copy, and ragged lists become object arrays."""
+    """Return an array as in NumPy 1: ``copy=False`` may copy, and ragged lists become object arrays."""
     may_copy: Any = True if copy else _WHERE_NEEDED
     try:
         return np.array(object, dtype, *args, copy=may_copy, **options)

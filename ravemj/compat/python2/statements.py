@@ -134,7 +134,7 @@ class Statements(ast.NodeTransformer):
 
 
 def _start(body: list[ast.stmt]) -> int:
-    """Return the index of the first statement after the docstring and ``__future__`` imports."""
+    """Return the index of the first statement after the docstring and imports from ``__future__``."""
     for number, statement in enumerate(body):
         is_docstring = number == 0 and isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
         if not is_docstring and not (isinstance(statement, ast.ImportFrom) and statement.module == "__future__"):
@@ -143,14 +143,14 @@ def _start(body: list[ast.stmt]) -> int:
 
 
 def _expression(place: ast.expr, text: str) -> ast.expr:
-    """Parse an expression; give the syntax tree the source position of the node ``place``."""
+    """Parse an expression into a syntax tree with the source position of the node ``place``."""
     statement = _at(place, text)
     assert isinstance(statement, ast.Expr)
     return statement.value
 
 
 def _at(place: ast.stmt | ast.expr | ast.excepthandler, text: str) -> ast.stmt:
-    """Parse a statement; give the syntax tree the source position of the node ``place``."""
+    """Parse a statement into a syntax tree with the source position of the node ``place``."""
     statement = ast.parse(text).body[0]
     for node in ast.walk(statement):
         ast.copy_location(node, place)

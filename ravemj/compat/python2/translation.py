@@ -97,7 +97,7 @@ def _tree(text: str, path: str) -> "Node":
 
 
 def _enclose_lists(tree: "Node") -> None:
-    """Parenthesize ``1, 2`` in ``[x for x in 1, 2]``, as Python 3 requires."""
+    """Add the parentheses that Python 3 requires in ``[x for x in 1, 2]``."""
     from fissix.fixer_util import LParen, RParen  # noqa: PLC0415 - slow to import
     from fissix.pygram import python_symbols  # noqa: PLC0415 - slow to import
 
@@ -109,7 +109,7 @@ def _enclose_lists(tree: "Node") -> None:
 
 
 def _name_targets(tree: "Node") -> dict[str, str]:
-    """Replace tuple targets of ``def f((a, b))`` and ``except E, (a, b)`` by names; return the tuples by name."""
+    """Replace tuple targets by names: ``def f((a, b))``, ``except E, (a, b)``; return the tuples by name."""
     from fissix.pgen2 import token  # noqa: PLC0415 - slow to import
     from fissix.pygram import python_symbols  # noqa: PLC0415 - slow to import
     from fissix.pytree import Leaf  # noqa: PLC0415 - slow to import
@@ -132,7 +132,7 @@ def _name_targets(tree: "Node") -> dict[str, str]:
 
 
 def _original_lines(tree: "Node") -> list[int]:
-    """Return for each line of the translation the number of its original line."""
+    """Return the original line of each line of the translation."""
     lines = [1]
     for leaf in tree.leaves():
         for _ in range(leaf.prefix.count("\n")):

@@ -120,7 +120,7 @@ class AxisReader(NamedTuple):
         return default if value is None or not math.isfinite(value) else abs(value * self._speed_unit())
 
     def _unit(self, angle: float) -> float:
-        """Return the factor from the file's values to rad or m; ``angle`` is the file's unit of angles [rad]."""
+        """Return the factor from the file's values to metres or radians; ``angle`` is the unit of angles [rad]."""
         return angle if self.is_revolute else self.library.metres(self.element)
 
     def _speed_unit(self) -> float:

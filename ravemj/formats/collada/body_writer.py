@@ -110,7 +110,7 @@ class BodyWriter:
         return f"{self._model_of_joint[index]}/joint{index}"
 
     def _write_joint(self, index: int, joint: Joint) -> None:
-        """Write type and axes of a joint; its frame is parallel to the parent link's."""
+        """Write type and axes of a joint, in the joint's frame, which is parallel to the parent link's."""
         out = self._sections.kinematics_models
         with out.inside("joint", sid=f"joint{index}", name=self._joint_names[index]):
             for place, direction in enumerate(self._directions(joint)):

@@ -46,7 +46,7 @@ class _BoundAxis(NamedTuple):
 
 
 class _RigidBodies(NamedTuple):
-    """Instance of a physics model: its URL, its parent node, and pairs (rigid body, node)."""
+    """The instance of a physics model: its URL, its parent node, and pairs of rigid bodies and nodes."""
 
     url: str
     parent: str | None
@@ -131,10 +131,10 @@ class _Finder:
         self._root = None if shown is None else expand(library, shown)
 
     def find(self, line: int) -> ExternalBody:
-        """Return the body whose instance or articulated system is at the line ``line``.
+        """Return the body whose instance or articulated system is at a line.
 
         Raises:
-            SourceError: There is no such body, or its elements have no names.
+            SourceError: There is no such body, or its parts have no names.
         """
         for kinematics in children(self._scene, "instance_kinematics_scene"):
             scene = self._library.follow(kinematics)

@@ -135,7 +135,7 @@ class GeometryReader:
             self._library.warn("broken-mesh", message, element)
 
     def _colours(self, instance: Element, symbol: str) -> tuple[Rgb, Rgb, float]:
-        """Return diffuse colour, ambient colour and transparency of the material bound to ``symbol``."""
+        """Return diffuse colour, ambient colour and transparency of the primitives with the material ``symbol``."""
         if instance not in self._bound:
             self._bound = {instance: bindings(instance)}  # for all of its groups, which come one after the other
         bound = self._bound[instance]
@@ -169,7 +169,7 @@ class GeometryReader:
 
 
 def _shape(element: Element, metres: float) -> Shape | None:
-    """Return the primitive shape of an element with one child per size; None if a size is missing or not finite."""
+    """Return the shape of an element with a child for each size; None if a size is missing or not finite."""
     kind = _PRIMITIVES[local_name(element)]
     sizes: dict[str, object] = {}
     for name, form, optional in kind.sizes():

@@ -13,7 +13,7 @@ from ravemj.model.scene import SHAPE_TYPES, Cylinder, Geometry, Mesh, Rgb, TriMe
 _TAGS = {kind.shape: kind.collada[-1] for kind in SHAPE_TYPES if kind.collada}  # the last of two is that along z
 _MESH_DECIMALS = 10  # a coordinate [m] that is all rounding becomes 0
 _LEAST_OPACITY = 1e-12
-"""Minimum opacity to write, since readers treat 0 as a mistake."""
+"""Minimum written opacity: readers treat an opacity of 0 as a mistake."""
 
 
 class GeometryWriter:
@@ -55,7 +55,7 @@ class GeometryWriter:
             node.element("instance_material", symbol="material", target=f"#{self._material(geometry)}")
 
     def _material(self, geometry: Geometry) -> str:
-        """Return the id of a geometry's material; geometries of equal colours share one."""
+        """Return the id of the material of a shape; shapes of the same colours share one."""
         colours = (geometry.diffuse, geometry.ambient, geometry.transparency)
         name = self._known.get(colours)
         if name is None:

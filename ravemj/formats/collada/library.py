@@ -193,7 +193,7 @@ class Library:
         return self._scale * self._unit(element)
 
     def _unit(self, element: Element) -> float:
-        """Return the unit of length [m] of the nearest enclosing ``<asset>``."""
+        """Return the length of the unit in the nearest enclosing ``<asset>`` [m]."""
         metres = self._units.get(element)
         if metres is None:
             asset = child(element, "asset", "unit")

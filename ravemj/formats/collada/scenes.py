@@ -19,7 +19,7 @@ from ravemj.model.scene import AttachedSensor
 
 _MAX_DEPTH = 20
 _GRAVITY: dict[str, Vec3] = {"X_UP": (-9.797930195020351, 0.0, 0.0), "Y_UP": (0.0, -9.797930195020351, 0.0)}
-"""OpenRAVE's gravity [m/s^2] by ``up_axis``, for files that are not z-up."""
+"""OpenRAVE's gravity [m/s^2] for files whose up axis is not z."""
 _MOST_SYSTEMS = 1000
 
 
@@ -186,7 +186,7 @@ def _axis_infos(scene: SceneContext, part: Element) -> dict[Element, Element]:
 
 
 def _node_body(library: Library, geometry: GeometryReader, node: Node) -> BodyBuilder | None:
-    """Return the single-link body that OpenRAVE creates for a scene node; None if the node has no geometry."""
+    """Return the single-link body that OpenRAVE creates for a node; None if it shows no geometry."""
     source = library.source(node.element)
     name = valid_name(node.name)
     T_world_link = rigid_part(node.world, source)

@@ -116,7 +116,7 @@ class SystemWriter:
                 self._bind_axes(tree, index, scope)
 
     def _bind_axes(self, tree: Tree, index: int, scope: str) -> None:
-        """Bind a joint's axes to node transforms and, if they are DOFs, to joint values."""
+        """Bind the axes of a joint to their nodes and, if they are DOFs, to their values."""
         joint = self._joints[index]
         for place, axis in enumerate(joint.axes):
             name = f"joint{self._number}.{index}_axis{place}"
@@ -243,7 +243,7 @@ class SystemWriter:
 
 
 def _in_file(joint: Joint, place: int, value: float) -> float:
-    """Return an axis value in the file's unit: metres for prismatic axes, else degrees."""
+    """Return an axis value in the unit of the file: degrees, or metres for prismatic axes."""
     return value if joint.slides(place) else settled.degrees(value)
 
 

@@ -19,7 +19,7 @@ _MAX_REACH = 1e15  # m; MuJoCo computes areas in single precision
 _SAMPLE = 64  # triangles
 
 _forms: WeakKeyDictionary[Mesh, CollisionForm] = WeakKeyDictionary()
-"""Cache of collision forms by mesh; an entry is removed with its mesh.
+"""Cache of collision forms by mesh, as long as the mesh exists.
 
 A lookup hashes the mesh, whose digest all callers need anyway.
 """
@@ -66,10 +66,10 @@ def _form(mesh: Mesh) -> CollisionForm:
 
 
 def _is_plainly_solid(mesh: Mesh) -> bool:
-    """Return True if a sample of triangles proves that the mesh has a volume; False proves nothing.
+    """Return True if a sample of triangles proves that the mesh has a volume; False is inconclusive.
 
     The thickness of a mesh in any direction is at least twice the standard deviation of a sample of its points; its
-    length is at most the diagonal of a box around the mesh and the origin.
+    length is at most the diagonal of a box around it and the origin.
     """
     corners = mesh.vertices[mesh.triangles[:: len(mesh.triangles) // _SAMPLE + 1]]
     if not len(corners) or _area(corners) <= _MIN_AREA:

@@ -22,7 +22,7 @@ GRAY = rgb((0.6, 0.6, 0.6))
 """Colour of OpenRAVE's importer if there is no material or the material has no colour."""
 
 _TEXTS: WeakKeyDictionary[Mesh, str] = WeakKeyDictionary()
-"""Cache of meshes in OBJ format: models share meshes, and formatting takes as long as compiling."""
+"""Cache of the OBJ texts of meshes in use: models share meshes, and formatting takes as long as compiling."""
 
 
 _WRITTEN = re.compile(r"mesh-[0-9a-f]{16}\.obj")

@@ -45,7 +45,7 @@ def read_with_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
 
 
 class _References(Mapping[str, bytes]):
-    """Resolver that gives trimesh the data buffers of a glTF file, but no textures, since they are not drawn."""
+    """Resolver that gives trimesh the data buffers of a glTF file, but no pictures, since they are not drawn."""
 
     def __init__(self, file: FileContent) -> None:
         self._file = file

@@ -126,7 +126,7 @@ def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None
 
 
 def _write_option(out: XmlLines, scene: Scene, options: Options) -> None:
-    """Write options that are not MuJoCo's defaults; servos need an integrator that treats them implicitly."""
+    """Write gravity, time step and integrator if not MuJoCo's defaults; servos need an implicit integrator."""
     servos = options.actuators in {"position", "velocity"}
     attributes: dict[str, Attribute | None] = {
         "gravity": scene.gravity,
@@ -191,7 +191,7 @@ class _MjcfWriter:
         self.sensors = SensorWriter(diagnostics, self._given.taken["site"])
 
     def write_body(self, index: int, body: KinBody) -> None:
-        """Write the kinematic tree of a body, starting at its root links, and its elements in other sections."""
+        """Write the kinematic tree of a body, root links first, and its elements in other sections."""
         joints = body.all_joints
         joint_names = tuple(
             self._joint_names(body, joint, i < len(body.joints), joint.name or f"joint{i}")
@@ -285,7 +285,7 @@ class _MjcfWriter:
         return tuple(count for count, _ in written), any(collides for _, collides in written)
 
     def _open_link(self, index: int, body: KinBody, link: int, merging: Merging, *, is_free: bool) -> None:
-        """Open the ``<body>`` of a link; for a merged link, write a ``<site>`` instead."""
+        """Open the body of a link, or write the site of a merged link."""
         described, pose = body.links[link], merging.pose_in_parent(link)
         self.bodies.comment(self._source_text(described.source), described.source)
         attributes = {"name": merging.names[link], **pose_attributes(pose)}
@@ -298,7 +298,7 @@ class _MjcfWriter:
         self._write_inertial(index, link, body, merging)
 
     def _source_text(self, source: Source) -> str:
-        """Return a comment with the source file and line of a link, relative to the model's folder if that is known."""
+        """Return the source of a link for a comment, relative to the model's folder if this is known."""
         folder = self.options.folder
         if folder is None or isinstance(source, Origin) or not os.path.exists(source.file):
             return str(source)

@@ -15,7 +15,7 @@ from ravemj.model.scene import KinBody
 _WORLD = -1
 
 _Cells = dict[int, list[int]]
-"""Link indices by weld group."""
+"""Links by weld group."""
 
 
 @dataclass(slots=True)

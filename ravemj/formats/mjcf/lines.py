@@ -95,7 +95,7 @@ def attribute_text(value: Attribute) -> str:
 
 @functools.lru_cache(maxsize=10_000)  # models repeat sizes, colours and axes, and digits take time
 def _numbers_text(values: tuple[float, ...]) -> str:
-    """Return numbers separated by spaces, integers without a decimal point and zero without a minus sign."""
+    """Return numbers separated by spaces; integers have no point, and zero has no minus sign."""
     return f"{' '.join(map(repr, values))} ".replace(".0 ", " ").replace("-0 ", "0 ")[:-1]
 
 

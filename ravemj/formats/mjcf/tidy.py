@@ -32,7 +32,7 @@ def tidy_vector(text: str) -> str:
 
 
 def _shortest(number: float, noise: float) -> str:
-    """Return the shortest decimal that differs from ``number`` by at most ``noise``."""
+    """Return the shortest decimal within ``noise`` of a number."""
     if abs(number) <= noise:
         return "0"
     few, enough = 0, 17  # insufficient and sufficient numbers of digits; more digits are never less accurate

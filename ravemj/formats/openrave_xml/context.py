@@ -273,7 +273,7 @@ PLACEMENT_TAGS: dict[str, Tag[Placed]] = {
 
 
 def _found_above(name: str, folder: str, access: FileAccess) -> str | None:
-    """Return the path of the file ``name`` in a parent of ``folder``; None unless exactly one parent contains it.
+    """Return the path of a file in a folder above ``folder``; None if no folder or several folders contain it.
 
     The search ends at the root of a repository, or after ``_MOST_ABOVE`` folders.
     """
@@ -309,7 +309,7 @@ _HOMES = {
 
 
 def _belongs(element: Element) -> str:
-    """Return a hint where a misplaced element belongs, or an empty string."""
+    """Return a hint for a misplaced element, or an empty text."""
     home = _HOMES.get(element.tag)
     return "" if home is None else f"<{element.spelled}> belongs in <{home}>"
 

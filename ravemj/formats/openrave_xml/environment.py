@@ -142,7 +142,7 @@ class _FileContents:
             )
 
     def read_environment(self, element: Element) -> None:
-        """Read an ``<Environment>``: first the file that it includes, then its children."""
+        """Read an ``<Environment>``: first its file, then its children."""
         self.context.check_attributes(element, ENVIRONMENT_ATTRIBUTES, {})
         root = self.context.include(element)
         if root is not None:
@@ -254,7 +254,7 @@ class _EnvironmentScope:
                     self.document.context.leave_out(child, NO_PHYSICS)
 
     def read_interface(self, element: Element) -> None:
-        """Warn of an interface that ravemj ignores, such as a viewer; an unknown class is an error, as in OpenRAVE."""
+        """Report an interface that ravemj ignores, such as a viewer; an unknown class is an error, as in OpenRAVE."""
         kind = element.attributes.get("type", "")
         name = kind.split()[0].lower() if kind.split() else ""
         if name and name not in _KNOWN_CLASSES:

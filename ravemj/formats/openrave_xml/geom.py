@@ -188,7 +188,7 @@ def read_geometries(element: Element, scope: GeometryScope, context: Context) ->
 
 
 def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geometry]:
-    """Return the geometries of a trimesh: of the collision file, else of the render file, else of the vertices."""
+    """Return the geometries of a trimesh: of the collision file, else of the render file, else of its vertices."""
     geometries: list[Geometry] = []
     for file in (geom.collision, geom.render):
         parts = _parts(geom, file, element, scope)
@@ -209,7 +209,7 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
 
 
 def _lost(file: MeshFile | None) -> tuple[MeshPart, ...]:
-    """Return OpenRAVE's parts for a missing file: none (gap-71), or for most absolute paths a red part (gap-72)."""
+    """Return OpenRAVE's parts of a missing file: none (gap-71), or a reddish part for most absolute paths (gap-72)."""
     if file is None or not os.path.isabs(file.name) or file.name.lower().endswith(".stl") or os.path.isfile(file.name):
         return ()
     return (_REDDISH,)
@@ -274,7 +274,7 @@ def _found(geom: _Geom, file: MeshFile | None, element: Element, scope: Geometry
 
 
 def _folders(element: Element, scope: GeometryScope) -> list[str]:
-    """Return the folders in which meshes are searched first."""
+    """Return the folders to search for meshes first."""
     folder = scope.models_folder
     return [] if folder is None else [os.path.join(os.path.dirname(element.source.file), folder)]
 
@@ -289,7 +289,7 @@ def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
 
 
 def _mesh_file(element: Element, diagnostics: Diagnostics) -> MeshFile:
-    """Read ``file [sx [sy [sz]]]``: a single number scales all axes, a missing sz equals sx."""
+    """Read ``file [sx [sy [sz]]]``: one number is a uniform scale, a missing sz is sx."""
     name = next(iter(words(element.text)), "")
     numbers = element.text[element.text.find(name) + len(name) :]
     if element.tag != "data":

@@ -85,7 +85,7 @@ class _JointElement:
         self.directions[index] = scale(axis, 1 / length)
 
     def read_limits(self, element: Element) -> None:
-        """Read lower and upper limits for each axis; ``limitsdeg`` is in degrees, except for prismatic axes."""
+        """Read a pair of limits for each axis; ``limitsdeg`` is in degrees, except for prismatic axes."""
         if self.stops:  # errors-31
             raise SourceError(f"<{element.spelled}> cannot be mixed with <lostop> and <histop>", element.source)
         values = number_list(element, self.context.diagnostics)

@@ -237,7 +237,7 @@ SCOPE_ATTRIBUTES = {
 
 
 _PLUGIN_CLASSES = {"collisionmaprobot", "conveyor"}
-"""Body classes that every OpenRAVE installation has; they are read as plain bodies."""
+"""Classes of bodies that every OpenRAVE installation has, which are read as plain bodies."""
 
 
 def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError | None]:

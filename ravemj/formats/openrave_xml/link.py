@@ -39,7 +39,7 @@ class _LinkScope(Placed):
         self.skip_geometry = skip_geometry
 
     def read(self, element: Element) -> None:
-        """Read the attributes, then the included file, then the children."""
+        """Read the attributes, the included file, and the children."""
         self.context.check_attributes(element, LINK_ATTRIBUTES, LINK_IGNORED_ATTRIBUTES)
         self.link.enabled = not is_false(element.attributes.get("enable", "true"))
         self.link.self_collision_ignored = is_false(element.attributes.get("selfcollision", "true"))

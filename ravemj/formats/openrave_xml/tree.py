@@ -217,7 +217,7 @@ class _TreeBuilder:
             self._entities.append(f"&{name};")
 
     def _refuse_entities(self) -> None:
-        """Raise if the start tag contains entities defined in the file, which expat replaces without notice."""
+        """Refuse a start tag that contains entities defined in the file, which expat replaces silently."""
         start = self._expat.CurrentByteIndex
         end = self._content.find(b"<", start + 1)  # values may hold a ">", never a "<"
         tag = self._content[start:end].replace(b"\0", b"")  # UTF-16 has zeros

@@ -25,10 +25,10 @@ from ravemj.formats.openrave_xml.tree import Element
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+|(?![eE])))", re.ASCII)
 _WORD = re.compile(r"\S+", re.ASCII)
-"""Pattern of a word; as in C++, only ASCII digits are digits and only ASCII white space is space."""
+"""Pattern of words: in C++, only ASCII digits are digits and only ASCII white space is space."""
 
 _OF_FEW_DIGITS = 0.01
-"""Maximum error of an entry of a rotation matrix that was written with two digits."""
+"""Maximum deviation of an entry of a rotation matrix that was written with two digits."""
 
 
 class Numbers(NamedTuple):
@@ -57,7 +57,7 @@ def leading_numbers(text: str) -> Numbers:
 
 
 def _plain_numbers(text: str) -> list[float] | None:
-    """Return the finite numbers of a text that contains nothing else, else None."""
+    """Return the numbers of a text that contains only numbers, else None."""
     if "_" in text or not text.isascii():  # float() takes 1_0 and digits of other scripts
         return None
     try:

@@ -13,7 +13,7 @@ _TOOLS = (
     "tool 0", "tcp", "end effector", "eef", "ee", "tool frame", "tool", "attachment", "flange", "palm", "gripper",
     "hand", "jaw",
 )  # fmt: skip
-"""Words in names of tool links, the most reliable word first."""
+"""Words in names of tool links, the most reliable first."""
 
 _WORDS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 _LEAST_DOFS, _MOST_ARMS = 3, 8
@@ -61,7 +61,7 @@ def _rank(link: str) -> int | None:
 
 
 def _longest(tree: RobotTree) -> list[str]:
-    """Return the last moving link of each kinematic chain, the chain with the most DOFs first."""
+    """Return the last moving link of each chain; the chain with the most DOFs comes first."""
     ends = [link for link, joint in tree.above.items() if tree.is_dof(joint) and not any(tree.dofs_below(link))]
     return sorted(ends, key=lambda link: -len(_dofs(link, tree)))
 

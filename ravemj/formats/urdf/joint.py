@@ -100,7 +100,7 @@ def make_joint(joint: UrdfJoint, links: Mapping[str, int], context: Context) -> 
 
 
 def _axis(joint: UrdfJoint, context: Context) -> Axis:
-    """Return the axis of a movable joint, in the joint's frame."""
+    """Return the axis of a joint that moves, in the joint's frame."""
     limits = _limits(joint, context)
     dynamics = only(joint.element, "dynamics", context)
     numbers = {} if dynamics is None else {

@@ -17,7 +17,7 @@ SCHEMES = ("package", "model")
 """Schemes of URIs that start with the name of a package."""
 
 _MOST_ABOVE = 12
-"""Number of parent folders of a URDF that are searched for a package."""
+"""Number of folders above a URDF in which a package is searched."""
 
 _LONGEST_MANIFEST = 1 << 20
 _MANIFEST_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")

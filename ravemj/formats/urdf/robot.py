@@ -87,7 +87,7 @@ def _name(root: Element, context: Context) -> str:
 
 
 def _note_left_out(root: Element, context: Context) -> None:
-    """Report elements that ravemj does not use, once for each tag."""
+    """Report unused elements, once for each tag."""
     inner = (part for child in root.children if child.spelled in {"link", "joint"} for part in child.children)
     left_out = [child for child in (*root.children, *inner) if child.spelled in _LEFT_OUT]
     for tag, count in Counter(child.spelled for child in left_out).items():
@@ -96,10 +96,10 @@ def _note_left_out(root: Element, context: Context) -> None:
 
 
 def _floating(frames: list[UrdfJoint], elements: Mapping[str, Element], context: Context) -> dict[str, UrdfJoint]:
-    """Return the floating joints by child link; they are omitted from the body, since OpenRAVE's bodies float.
+    """Return the floating joints by child link; they are omitted, since bodies of OpenRAVE float by default.
 
     Raises:
-        SourceError: The parent of a floating joint has shapes, or is the child of another joint.
+        SourceError: the parent of a floating joint has shapes, or another joint carries it.
     """
     carried = {joint.child for joint in frames}
     for joint in frames:

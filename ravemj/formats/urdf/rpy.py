@@ -15,7 +15,7 @@ NOTHING = "0 0 0"
 
 _DECIMALS = 14
 _LOCKED = 1e-10
-"""Cosine of the pitch below which the orientation is treated as gimbal lock."""
+"""Cosine of the pitch below which roll and yaw are not separable (gimbal lock)."""
 
 
 def numbers(vector: Iterable[float]) -> str:

@@ -34,7 +34,7 @@ from ravemj.model.scene import (
 )
 
 _GRAY: Rgb = (0.7, 0.7, 0.7)
-"""Colour of primitive shapes without a material."""
+"""Colour of boxes, cylinders, spheres and capsules without a material."""
 
 _SHAPES = ("box", "sphere", "cylinder", "capsule", "mesh")
 _KINDS = ("origin", "geometry", "material", "verbose", "name", "contact_coefficients", "max_contacts")
@@ -221,7 +221,7 @@ class UrdfShapeReader:
         return UrdfShape(TriMesh(mesh), parts, MeshFile(path, factors))
 
     def _find(self, uri: str, source: Source) -> str | None:
-        """Return the path of a mesh file; None, with a diagnostic, if it is missing or not permitted."""
+        """Return the path of a mesh file; None, with a diagnostic, if it is missing or must not be read."""
         package_file, diagnostics = self.packages.find(uri), self.context.diagnostics
         if package_file.path is not None:
             return package_file.path
@@ -246,7 +246,7 @@ _SIZES = {"box": ("size",), "sphere": ("radius",), "cylinder": ("radius", "lengt
 
 
 def _scale(element: Element) -> Vec3:
-    """Return the scale factors of a mesh; a single number applies to all axes, although urdfdom refuses it."""
+    """Return the scale factors of a mesh; a single number, which urdfdom refuses, applies to all axes."""
     text = element.attributes.get("scale", "")
     if len(text.split()) == 1:
         factor = number_of(element, "scale", 1.0)

@@ -27,7 +27,7 @@ from ravemj.model.look import (
 )
 
 _LIFTED = 1e-6
-"""Minimum camera height above a visible floor, relative to the radius of the scene."""
+"""Minimum height of the camera above a visible floor [radii of the scene]."""
 
 
 class Floor(NamedTuple):

@@ -53,7 +53,7 @@ _Made = TypeVar("_Made")
 
 
 class _GLContext(Protocol):
-    """Common interface of the context classes in mujoco.egl, mujoco.osmesa and mujoco.glfw."""
+    """Common interface of the contexts of mujoco.egl, mujoco.osmesa and mujoco.glfw."""
 
     def __init__(self, max_width: int, max_height: int) -> None: ...
     def as_current(self) -> contextlib.AbstractContextManager[None]: ...
@@ -219,7 +219,7 @@ def _close_all() -> None:
 
 @in_child
 def _disown_all() -> None:
-    """Abandon the OpenGL contexts in a forked child: freeing them, even at exit, would need threads of the parent."""
+    """Disown the contexts in a forked child: freeing them, even at exit, would need threads of the parent."""
     global _is_fork, _lock
     _is_fork, _lock = _is_fork or bool(_used), threading.RLock()
     for thing in (*_open, *_not_freed):

@@ -76,7 +76,7 @@ def _write(slots: tuple[mujoco.MjvGeom, ...], kind: mujoco.mjtGeom, batch: Primi
 
 
 def _column(slots: tuple[mujoco.MjvGeom, ...], name: str) -> _Floats32:
-    """Return a writable array view of one field of consecutive geoms, which MuJoCo allocates contiguously."""
+    """Return a writable view of one field of consecutive geoms, which MuJoCo allocates in one block."""
     first: _Floats32 = getattr(slots[0], name)
     second: _Floats32 = getattr(slots[min(1, len(slots) - 1)], name)
     stride = second.ctypes.data - first.ctypes.data
@@ -98,6 +98,6 @@ def _frames_of_triangles(corners: Floats, eye: Floats) -> tuple[Floats, Floats, 
 
 
 def _length_and_direction(vectors: Floats) -> tuple[Floats, Floats]:
-    """Return the lengths, shape (N,), and unit vectors, shape (N, 3), of vectors; zero vectors stay zero."""
+    """Return the lengths, shape (N,), and the unit vectors of vectors, shape (N, 3); zero vectors stay zero."""
     lengths = np.linalg.norm(vectors, axis=1)
     return lengths, vectors / np.where(lengths > 0, lengths, 1)[:, None]

@@ -17,16 +17,16 @@ from ravemj.graphics.rendering.lights import Lights
 from ravemj.model.drawing import PrimitiveBatch, Primitives
 
 _AT_ONCE = 1 << 20
-"""Maximum number of (primitive, pixel) pairs that are tested at once, to limit memory."""
+"""Maximum number of (primitive, pixel) pairs tested at once."""
 
 _PIECE = 16.0
-"""Length of line segments [px]; long lines are divided so that the bounding rectangles stay small."""
+"""Length of the segments into which lines are divided [pixels], so that bounding rectangles stay small."""
 
 _NEAREST = 1e-6
 """Near clipping depth of drawings [m]."""
 
 _SLACK = 1e-9
-"""Tolerance of barycentric coordinates that avoids gaps between adjacent triangles."""
+"""Tolerance of barycentric coordinates, so that there are no gaps between adjacent triangles."""
 
 
 class Fragments(NamedTuple):
@@ -148,7 +148,7 @@ class Raster:
             yield self._lit(ray[hit], depth, direction[hit], normals, batch.rgba[sphere])
 
     def _around_spheres(self, center: Floats, radius: Floats) -> tuple[Floats, Floats]:
-        """Return bounding rectangles of spheres on the screen; the whole screen for those cut by the camera plane."""
+        """Return the bounding rectangles on the screen; the whole screen for spheres cut by the camera plane."""
         x_or_y, depth, r = center[:, :2], center[:, 2:], radius[:, None]
         in_front = (depth > r)[:, 0]
         low, high = _whole_screen(len(radius))
@@ -177,7 +177,7 @@ class Raster:
             yield self._lit(ray[hit], depth[hit], direction[hit], normals[owner[hit]], batch.rgba[owner[hit]])
 
     def _around_triangles(self, corners: Floats) -> tuple[Floats, Floats]:
-        """Return bounding rectangles of triangles on the screen; the whole screen for those cut by the camera plane."""
+        """Return the bounding rectangles on the screen; the whole screen for triangles cut by the camera plane."""
         in_front = (corners[:, :, 2] > _NEAREST).all(axis=1)
         low, high = _whole_screen(len(corners))
         on_screen = self._project(corners[in_front])
@@ -189,12 +189,12 @@ class Raster:
         return self.camera.pinhole(*self.size)
 
     def _project(self, points: Floats) -> Floats:
-        """Project points in the camera frame, shape (..., 3), to the screen [px], shape (..., 2)."""
+        """Project points in the camera frame, shape (..., 3), to the screen, shape (..., 2) [pixels]."""
         focal, principal = np.array(self._pinhole).reshape(2, 2)
         return points[..., :2] / points[..., 2:] * focal + principal
 
     def _directions(self, at: Floats) -> Floats:
-        """Return rays through screen points, shape (N, 2), as camera-frame vectors of depth 1, shape (N, 3)."""
+        """Return the rays through points of the screen, (N, 2), in the camera frame with depth 1, (N, 3)."""
         focal, principal = np.array(self._pinhole).reshape(2, 2)
         return np.column_stack([(at - principal) / focal, np.ones(len(at))])
 

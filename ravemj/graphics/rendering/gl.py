@@ -17,7 +17,7 @@ from ravemj.model.drawing import NOTHING, Primitives
 from ravemj.model.look import WHITE
 
 _DEPTH_ZERO_FAR = 1
-"""MuJoCo's ``mjDEPTH_ZEROFAR``: depth is read as rendered, without loss of precision."""
+"""MuJoCo's ``mjDEPTH_ZEROFAR``: depth values are returned as rendered, without loss of precision."""
 
 
 class GlRenderer(Renderer):

@@ -36,7 +36,7 @@ MuJoCo's offset against self-shadowing is proportional to it: 1 gives shadow art
 """
 
 _SHADOW_DISTANCE = 1.1
-"""Distance of lights from the centre of their shadow maps, relative to the scene's radius; the floor is farther."""
+"""Distance of lights from the centre of their shadow maps [radii of the scene]; the floor is farther away."""
 
 _SLICES, _STACKS = 48, 24
 """Facets around and along round shapes; with MuJoCo's 28 and 16, edges are visible in close-ups."""
@@ -46,22 +46,22 @@ _SAMPLES = 4
 
 _SPARE_GEOMS = 1000
 _MAX_FIGURES = 300_000
-"""Maximum number of drawn primitives in a picture; MuJoCo takes a second to allocate their memory."""
+"""Maximum number of drawn primitives in one picture, for which MuJoCo takes a second to allocate memory."""
 
 _SMALLEST = 1e-3
-"""Minimum radius [m] of a drawing's bounding sphere, as for a single point."""
+"""Minimum radius of a drawing's bounding sphere [m], for instance of a single point."""
 
 _WIDEST = 1e-6
-"""Minimum ratio of near to far clipping depth, below which MuJoCo loses the background."""
+"""Minimum ratio of near to far depth; below it MuJoCo loses the background."""
 
 FLOOR_MATERIAL = "floor"
 """Name of the material with the floor's grid in MJCF files."""
 
 _FLOOR_BELOW = 1e-4
-"""Gap between bodies and drawn floor, relative to the radius of the scene, so that a floor of the model hides it."""
+"""Gap between the bodies and the drawn floor [radii of the scene]; a floor of the model hides it."""
 
 _painting = threading.Lock()
-"""Lock held while the model's texture temporarily contains a background colour."""
+"""Lock held while the texture of a model contains a background colour."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -163,7 +163,7 @@ class GlScene:
             self._add_floor(self._floor, camera)
 
     def _add_floor(self, floor: Floor, camera: Camera) -> None:
-        """Append the floor with fog towards the horizon; its colour is corrected for the lighting."""
+        """Append the floor, in colours that are corrected for the lighting, with fog towards the horizon."""
         start, end = floor.fading(camera)
         half = floor.cell * np.ceil(FLOOR_REACH * end / floor.cell)
         middle = floor.cell * np.rint(camera.position[:2] / floor.cell)
@@ -254,7 +254,7 @@ class GlScene:
                 light.pos = center - (near + _SHADOW_DISTANCE * radius) * light.dir
 
     def _paint_background(self) -> None:
-        """Upload a new skybox to OpenGL if the background changed; the model's own texture stays unchanged."""
+        """Upload a new skybox if the background changed; the model keeps its own texture."""
         background = self._look.background
         if self._skybox is None or self._painted == (background,):
             return
@@ -330,7 +330,7 @@ def _depths_of_sphere(center: Floats, radius: float, camera: Camera) -> tuple[fl
 
 
 def _find_skybox(model: mujoco.MjModel) -> int | None:
-    """Return the id of the model's skybox texture; None if it has no writable one."""
+    """Return the id of the skybox texture; None if there is no writable one."""
     skyboxes = np.flatnonzero(model.tex_type == mujoco.mjtTexture.mjTEXTURE_SKYBOX)
     if skyboxes.size == 0 or model.tex_adr[skyboxes[0]] < 0 or model.tex_nchannel[skyboxes[0]] < 3:
         return None
@@ -339,7 +339,7 @@ def _find_skybox(model: mujoco.MjModel) -> int | None:
 
 @block
 def _quality_of(model: mujoco.MjModel, quality: Quality) -> Generator[None]:
-    """Set the model fields for quality that ``MjrContext`` reads; restore them at the end of the block."""
+    """Set the quality fields of the model that ``MjrContext`` reads, and restore them at the end of the block."""
     sizes: Sequence[tuple[object, str, int]] = (
         (model.vis.global_, "offwidth", quality.width),
         (model.vis.global_, "offheight", quality.height),

@@ -27,13 +27,13 @@ from ravemj.model.drawing import NOTHING, Primitives
 from ravemj.model.look import WHITE
 
 _BAND = 1 << 16
-"""Number of rays cast at once, which needs a few megabytes whatever the picture's size."""
+"""Number of rays cast at once: a few megabytes, independent of the size of the picture."""
 
 _LAYERS = 6
-"""Maximum number of transparent surfaces that a ray passes through."""
+"""Maximum number of transparent surfaces along a ray."""
 
 _EDGE = 12
-"""Colour difference between adjacent pixels (0..255) above which both are antialiased."""
+"""Difference between neighbouring pixels (0..255) above which an edge is antialiased."""
 
 _SUBPIXELS = np.array([(-0.125, -0.375), (0.375, -0.125), (0.125, 0.375), (-0.375, 0.125)])
 
@@ -47,7 +47,7 @@ _TWO_WALLS = (
     mujoco.mjtGeom.mjGEOM_CYLINDER,
     mujoco.mjtGeom.mjGEOM_BOX,
 )
-"""Convex geom types, which a ray enters and leaves once: if it hits a back face, it started inside."""
+"""Convex shapes, which a ray enters and leaves once; a ray that hits a back face started inside."""
 
 
 class RayRenderer(Renderer):
@@ -141,7 +141,7 @@ class RayRenderer(Renderer):
         camera: Camera,
         primitives: Primitives,
     ) -> None:
-        """Antialias: replace pixels that differ from a neighbour by the mean of four rays."""
+        """Replace pixels that differ from a neighbour by the mean of four rays."""
         rows, columns = np.nonzero(_edges(picture))
         ray_of_pixel = np.full(picture.shape[:2], -1)
         ray_of_pixel[rows, columns] = np.arange(rows.size)
@@ -159,7 +159,7 @@ class RayRenderer(Renderer):
 
 @dataclass
 class _RayScene:
-    """State of a model, seen from one camera position."""
+    """One state of a model, seen from one camera position."""
 
     model: mujoco.MjModel  # its geom groups select the visible geoms
     data: mujoco.MjData
@@ -169,7 +169,7 @@ class _RayScene:
     backdrop: Backdrop
 
     def colors(self, rays: Floats, drawn: Fragments, layers: int = _LAYERS) -> Floats:
-        """Return colours in 0..255, shape (N, 3), along rays with at most ``layers`` transparent surfaces."""
+        """Return the unrounded colours in 0..255, shape (N, 3), seen along rays in the world, shape (N, 3)."""
         colors = self.backdrop.colours(rays)
         geom_ids, depth, normals = self.cast(rays)
         hit = np.flatnonzero(geom_ids >= 0)
@@ -228,7 +228,7 @@ class _RayScene:
 
 
 def _edges(picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
-    """Return a mask, shape (H, W), of the pixels that differ by more than ``_EDGE`` from an adjacent one."""
+    """Return a mask, shape (H, W), of the pixels that differ from an adjacent pixel in their row or column."""
     edges = np.zeros(picture.shape[:2], dtype=np.bool_)
     for first, second in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
         pixel, other = picture[first], picture[second]

@@ -22,10 +22,10 @@ from ravemj.graphics.webgl.surfaces import surfaces
 from ravemj.model.drawing import NOTHING, Primitives
 
 _HEIGHT = 480
-"""Height of an animation in a notebook [px]."""
+"""Height of a page in a notebook [pixels]."""
 
 _STILL = 1e-9
-"""Movement below which a body counts as static [m, or component of a unit quaternion]."""
+"""Movement below which bodies count as static [m, and components of a unit quaternion]."""
 
 
 class Recording(NamedTuple):
@@ -140,7 +140,7 @@ def _pack_recording(package: Package, recording: Recording) -> None:
 
 
 def _continuous(rotations: Floats) -> Floats:
-    """Choose the signs of quaternions, shape (frames, bodies, 4), so that they change least between frames."""
+    """Choose the signs of quaternions, shape (frames, bodies, 4), so that each is nearest to the previous one."""
     turns = np.sign(np.einsum("fbi,fbi->fb", rotations[1:], rotations[:-1]))
     signs = np.cumprod(np.where(turns < 0, -1.0, 1.0), axis=0)
     return np.concatenate([rotations[:1], rotations[1:] * signs[:, :, None]])

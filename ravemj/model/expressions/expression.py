@@ -70,7 +70,7 @@ class Expression:
 
     @cached_property
     def _content(self) -> tuple[object, ...]:
-        """Nodes with the indices of their arguments, to compare expressions by value."""
+        """Nodes with the indices of their arguments, for comparison by value."""
         return contents(self.nodes)
 
     def __eq__(self, other: object) -> bool:

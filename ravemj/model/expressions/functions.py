@@ -191,7 +191,7 @@ def _binary(scalar: Callable[[float, float], float], array: Callable[[Floats, Fl
 
 
 def _test(scalar: Callable[[float, float], bool], array: Callable[[Floats, Floats], Bools]) -> Function:
-    """Create a binary operator whose result is 1 or 0."""
+    """Make an operator whose result is 1 or 0."""
     return _binary(lambda x, y: 1.0 if scalar(x, y) else 0.0, lambda x, y: array(x, y).astype(np.float64))
 
 
@@ -213,7 +213,7 @@ def _if_arrays(condition: Floats, x: Floats, y: Floats) -> Floats:
 
 
 def _several(arity: int, roots: Roots, most_roots: int) -> Function:
-    """Create a multivalued function; its scalar and array forms return the first value."""
+    """Make a multivalued function, whose scalar and array forms return the first value."""
     return replace(_root(arity, roots, 0), roots=roots, most_roots=most_roots)
 
 

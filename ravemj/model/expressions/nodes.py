@@ -87,7 +87,7 @@ class Graph:
 
 
 def _key(node: Node) -> tuple[object, ...]:
-    """Return a key that equal nodes share; arguments are compared by identity."""
+    """Return a key that equal nodes share; it compares the arguments of a node by identity."""
     match node:
         case Number(value):
             return (Number, repr(value))  # distinguishes -0.0 from 0.0, and treats all nan as equal

@@ -13,7 +13,7 @@ MAX_PRODUCTS = 1000  # maximum number of terms in one multiplication, against ma
 Coefficients = tuple[float, ...]  # ascending
 
 _Polynomial = dict[tuple[str, ...], float]
-"""Nonzero coefficients by monomial: the key of x^2 y is ("x", "x", "y"), the key of the constant is ()."""
+"""Nonzero coefficients by product of variables: the key of x^2 y is ("x", "x", "y"), that of the constant ()."""
 
 
 def coefficients(nodes: list[Node], variable: str, max_degree: int) -> Coefficients | None:
@@ -46,7 +46,7 @@ def affine(nodes: list[Node]) -> Affine | None:
 
 
 def _polynomial(nodes: list[Node]) -> _Polynomial | None:
-    """Return the last of ``nodes`` as a polynomial in the variables; None if it is not a polynomial."""
+    """Return the last of ``nodes`` as a polynomial, or None if it does not have the form of a polynomial."""
     polynomials: dict[Node, _Polynomial | None] = {}
     for node in nodes:
         match node:

@@ -30,7 +30,7 @@ def text_of(nodes: list[Node]) -> str:
 
 
 def _write(node: Node, written: Mapping[Node, str], lowest: int) -> str:
-    """Return a node as text, in parentheses if its precedence is below ``lowest``."""
+    """Return the text of a node, in parentheses if it binds less tightly than ``lowest``."""
     if node in written:
         return written[node]
     precedence, text = _parts(node, written)

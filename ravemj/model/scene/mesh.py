@@ -81,7 +81,7 @@ class Mesh:
 
 
 def _is_settled(numbers: NDArray[Any], kind: type) -> bool:
-    """Return whether a mesh can use an array without copying it: right type and shape, own memory, read-only."""
+    """Return whether a mesh can use an array without a copy: correct type, own memory, read-only."""
     return (
         numbers.dtype == kind
         and numbers.shape[1:] == (3,)

@@ -15,7 +15,7 @@ MOST_RAYS = 1_000_000
 """Maximum number of rays per measurement; a larger number indicates a wrong unit."""
 
 _WIDEST = 16_384
-"""Maximum number of pixels along a side of an image, a limit of OpenGL."""
+"""Maximum number of pixels along a side of an image; OpenGL's limit."""
 
 SENSOR_COLOR: Vec3 = (0.5, 0.5, 1.0)
 """Default colour of a sensor in viewers."""

@@ -87,7 +87,7 @@ _COUNTABLE = re.compile(
     rb"|shift_?jis|euc-?\w+|koi8-?\w",
     re.IGNORECASE,
 )
-"""Encodings in which ``<`` has its ASCII code, so that tags can be counted before parsing."""
+"""Encodings in which ``<`` has its ASCII code, so that elements can be counted before parsing."""
 
 
 def parse_tree(data: bytes, path: str) -> Element | None:

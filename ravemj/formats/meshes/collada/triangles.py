@@ -152,7 +152,7 @@ def _polygons(element: Element, kind: str) -> tuple[Ints, Ints]:
 
 
 def _index_lists(element: Element) -> list[Element]:
-    """Return the ``<p>`` elements of a primitive; of polygons with holes only the outlines."""
+    """Return the ``<p>`` elements of a primitive; of polygons with holes, the outlines."""
     lists = list(children(element, "p"))
     return lists + [item for holed in children(element, "ph") for item in children(holed, "p")]
 

@@ -40,7 +40,7 @@ def parse(document: InventorDocument) -> list[InventorNode]:
 
 
 class _AsciiParser:
-    """Recursive-descent parser; ``_at`` is the position of the next token."""
+    """Recursive-descent parser; ``_at`` is the end of the parsed text."""
 
     def __init__(self, document: InventorDocument) -> None:
         self._document = document
@@ -73,7 +73,7 @@ class _AsciiParser:
         return None
 
     def _next(self) -> str:
-        """Return the next token; an empty string at the end of the text."""
+        """Return the next token; the empty string at the end."""
         match = self._token.match(self._text, self._at)
         if match is None:
             self._fail("a string without an end")

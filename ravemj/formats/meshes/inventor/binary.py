@@ -37,7 +37,7 @@ def parse(document: InventorDocument, data: bytes) -> list[InventorNode]:
 
 
 class _BinaryReader:
-    """Sequential reader; ``_at`` is the offset of the next byte."""
+    """Sequential reader; ``_at`` is the end of the data read."""
 
     def __init__(self, document: InventorDocument, body: bytes, flagged: bool) -> None:
         self._document = document

@@ -64,7 +64,7 @@ def _include(traversal: Traversal, node: InventorNode, state: TraversalState) ->
 
 
 def _moving(matrix: Callable[[InventorNode], Floats]) -> Handler:
-    """Return the handler of a transform node; ``matrix`` computes the node's 4x4 transform."""
+    """Return the handler of a transform; ``matrix`` returns its 4x4 matrix."""
     return lambda _traversal, node, state: moved(state, matrix(node))
 
 
@@ -115,7 +115,7 @@ def _material(traversal: Traversal, node: InventorNode, state: TraversalState) -
 
 
 def _faces(polygons: Callable[[InventorNode, int], tuple[Ints, Ints]], are_strips: bool = False) -> Handler:
-    """Return the handler of a node of polygons or strips; ``polygons`` returns their sizes and point indices."""
+    """Return the handler of a shape of polygons or strips; ``polygons`` returns their sizes and point indices."""
 
     def add(traversal: Traversal, node: InventorNode, state: TraversalState) -> TraversalState:
         own = node.node("vertexProperty")

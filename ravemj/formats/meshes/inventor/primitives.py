@@ -61,7 +61,7 @@ def _joined(parts: Set[str], **pieces: Floats) -> Floats:
 
 
 def _circle(count: int) -> Floats:
-    """Return ``count`` points of the unit circle about the y axis, counter-clockwise seen from +y."""
+    """Return points of the unit circle about y, counter-clockwise seen from above (+y)."""
     angles = 2 * np.pi * np.arange(count) / count
     return np.stack([-np.sin(angles), np.zeros(count), -np.cos(angles)], axis=1)
 
