@@ -83,7 +83,7 @@ def _source(states: JointStates, options: argparse.Namespace) -> Callable[[], No
 
 
 def _update(robot: Robot, states: JointStates) -> None:
-    """Set the robot to the latest state, which may exceed its limits."""
+    """Set the robot to the latest joint state, which may exceed the joint limits."""
     values = states.pop()
     if values:
         names = robot.simulation_state.scene.dof_names

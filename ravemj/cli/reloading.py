@@ -110,7 +110,7 @@ class Reloader:
         self._stamps = _stamps(self._files)
 
     def _watch_also(self, source: Source) -> None:
-        """Also watch a file that could not be read."""
+        """Watch a file that could not be read, in addition to the others."""
         if source.file not in self._files:
             self._files = (*self._files, source.file)
             self._stamps = _stamps(self._files)

@@ -79,7 +79,7 @@ def _items(options: argparse.Namespace, before: Mapping[str, Any]) -> Items:
 
 @contextmanager
 def _executor(options: argparse.Namespace) -> Generator[int | Executor | None]:
-    """Yield the executor of ``--executor``, shut down at the end; by default the number of ``--jobs``, None if 1."""
+    """Yield the user's executor and shut it down at the end; without one yield the number of jobs, None if it is 1."""
     if options.executor is None:
         yield options.jobs if options.jobs > 1 else None
         return

@@ -18,7 +18,7 @@ from ravemj.rave.whole_body import WholeBodyIK, WholeBodyResult
 _SIZES = (3, 7)
 _MOST_STEPS = 1000
 _BALANCE = 1e-5
-"""Weight of the centre-of-mass task: too small to affect the tolerance of a goal."""
+"""Weight of the centre-of-mass task, too small to affect whether goals are within tolerance."""
 _BASE_ROW = "base x,y,z,qw,qx,qy,qz"
 
 

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from ravemj.errors import ErrorCode, RavemjError
 
 _LONGEST_IMPORT = 1.0
-"""Maximum time that a fork waits for imports in other threads [s]."""
+"""Maximum time [s] that a fork waits until other threads finish their imports."""
 
 NEW_PROCESS = 'start processes with multiprocessing.get_context("spawn")'
 

@@ -198,7 +198,7 @@ def temporary_folder() -> Generator[str]:
 
 @cache
 def _realm() -> str:
-    """Return eight hexadecimal digits for the namespace of process ids: the machine, and the container on it."""
+    """Return eight hexadecimal digits that identify the namespace of process ids: the machine and its container."""
     import hashlib  # noqa: PLC0415 - slow to import
 
     try:

@@ -163,7 +163,7 @@ class _Assignments(ast.NodeVisitor):
             self.texts[target.id] = text
 
     def _text(self, value: ast.expr) -> str | None:
-        """Evaluate an expression for a path; None if it is not supported."""
+        """Evaluate an expression for a path; return None if the expression is not supported."""
         if isinstance(value, ast.Constant):
             return str(value.value)
         if isinstance(value, ast.Name):

@@ -36,7 +36,7 @@ _WITH_POINT = {*_PLACES, *_RAYS, *_WITH_ANGLE, _Type.TranslationLocalGlobal6D}
 _ANGLE_WEIGHT = 0.4
 """OpenRAVE's weight of a squared angle [rad^2] relative to a squared distance [m^2] in distances between goals."""
 _UNIT = 0.01
-"""Tolerance of the squared length of a direction."""
+"""Tolerance of the squared length of a unit vector."""
 
 
 def goal_transform(value: ArrayLike, name: str) -> Floats:
@@ -253,7 +253,7 @@ def _wrapped(angle: float) -> float:
 
 
 def _nearest_point(ray: Floats) -> Floats:
-    """Return the point of a ray, given by direction and point, nearest to the origin."""
+    """Return the point of a line nearest to the origin; ``ray`` is direction and point."""
     direction, point = ray[:3], ray[3:]
     return point - direction * (direction @ point)
 

@@ -90,7 +90,7 @@ class _Output:
         self._process.wait()
 
     def reason(self, file: Path, seconds: float) -> str:
-        """Return the reason why there is no verdict."""
+        """Return the reason why the process gave no verdict."""
         if "Timeout (" in self.errors:
             name = str(file).encode("ascii", "backslashreplace").decode()  # as faulthandler writes it
             last_place = re.search(rf'File "{re.escape(name)}", line (\d+)', self.errors)

@@ -267,7 +267,7 @@ class BodyBuilder:
         return sensor if name is None or self.refusal is not None else replace(sensor, link=self.find_link(name))
 
     def _in_order(self) -> list[JointBuilder]:
-        """Return the active joints, then the disabled ones, then the mimic joints."""
+        """Return the joints in the order: active, disabled, mimic joints."""
         active = [joint for joint in self.joints if joint.active]
         disabled = [joint for joint in self.joints if not joint.enabled]
         return active + disabled + [joint for joint in self.joints if joint.enabled and not joint.active]

@@ -279,7 +279,7 @@ def poses_in(body: KinBody, dof_values: Sequence[float]) -> list[Pose]:
 
 
 def _random_value(axis: Axis, random: np.random.Generator) -> float:
-    """Return a random value within the limits, and within ``_FARTHEST`` of 0 if they allow it."""
+    """Return a random axis value within the limits and, if these allow it, within +-``_FARTHEST``."""
     low, high = (min(max(end, axis.lower), axis.upper) for end in (-_FARTHEST, _FARTHEST))
     return float(random.uniform(low, high))
 

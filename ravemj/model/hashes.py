@@ -59,7 +59,7 @@ def of_manipulator(body: KinBody, arm: Manipulator) -> str:
 
 
 def _gripper(body: KinBody, arm: Manipulator) -> tuple[object, ...]:
-    """Return the names of the gripper joints, and how they close; OpenRAVE hashes no other joint names."""
+    """Return names and closing directions of the gripper joints; OpenRAVE hashes no other joint names."""
     return [body.joints[index].name for index in arm.gripper_joints], arm.chucking_direction
 
 

@@ -31,7 +31,7 @@ def _partials(text: str) -> dict[str, str]:
 
 
 def _respelled(equation: str, names: Mapping[str, str]) -> str:
-    """Return an equation in canonical spelling; if it is invalid, the text itself."""
+    """Return an equation in canonical spelling; return an invalid one unchanged."""
     try:
         return str(parse(substitute(equation, names), set(names.values())))
     except ExpressionError:

@@ -14,7 +14,7 @@ from ravemj.model.mimic import evaluation_order, leaders
 from ravemj.model.scene import Joint, KinBody
 
 _SAMPLES = 1000
-"""Number of leader values at which the derivative of a mimic equation is sampled."""
+"""Number of leader values at which the slope of a mimic equation is sampled."""
 
 
 def motion_bounds(body: KinBody) -> Floats:
@@ -41,7 +41,7 @@ def reach(body: KinBody) -> float:
 
 
 def _joint_reach(body: KinBody, joint: Joint) -> Floats:
-    """Return for each axis of a joint the maximum distance of moved shapes from the axis; 1 for prismatic axes."""
+    """Return for each axis of a joint the largest distance to shapes that it moves [m]; 1 for prismatic axes."""
     if joint.kind == "slider":
         return np.ones(1)
     if joint.static or not joint.places_child:

@@ -134,7 +134,7 @@ def _tool_poses(work: Work, values: Floats) -> Floats:
 
 
 def _goals(work: Work, random: np.random.Generator, count: int) -> Floats:
-    """Draw goals that the arm can reach with the other joints at their present values."""
+    """Draw IK goals that the arm can reach while the other joints keep their values."""
     arm = work.tool.GetArmIndices()
     values = np.tile(work.mover.GetDOFValues(), (count, 1))
     values[:, arm] = joint_values(work, random, count)[:, arm]

@@ -46,7 +46,7 @@ class _BoundAxis(NamedTuple):
 
 
 class _RigidBodies(NamedTuple):
-    """The instance of a physics model: its URL, its parent node, and pairs of rigid bodies and nodes."""
+    """Instance of a physics model: its URL, its parent node, and pairs (rigid body, node)."""
 
     url: str
     parent: str | None

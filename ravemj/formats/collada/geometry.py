@@ -128,7 +128,7 @@ class GeometryReader:
         return self._meshes[geometry]
 
     def _check_count(self, element: Element, readable: int) -> None:
-        """Warn if fewer triangles are readable than declared; for other polygons, only if none is readable."""
+        """Warn if fewer triangles than declared are readable; for other polygons, if none is readable."""
         count = attribute_number(element, "count", 0)
         if readable < count and (readable == 0 or local_name(element) == "triangles"):
             message = f"only {readable} of {count:.0f} can be read: indices lead nowhere, or numbers are missing"
@@ -169,7 +169,7 @@ class GeometryReader:
 
 
 def _shape(element: Element, metres: float) -> Shape | None:
-    """Return the shape of an element with a child for each size; None if a size is missing or not finite."""
+    """Return the primitive shape of an element with one child per size; None if a size is missing or not finite."""
     kind = _PRIMITIVES[local_name(element)]
     sizes: dict[str, object] = {}
     for name, form, optional in kind.sizes():

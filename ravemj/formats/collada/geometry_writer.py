@@ -55,7 +55,7 @@ class GeometryWriter:
             node.element("instance_material", symbol="material", target=f"#{self._material(geometry)}")
 
     def _material(self, geometry: Geometry) -> str:
-        """Return the id of the material of a shape; shapes of the same colours share one."""
+        """Return the id of a geometry's material; geometries of equal colours share one."""
         colours = (geometry.diffuse, geometry.ambient, geometry.transparency)
         name = self._known.get(colours)
         if name is None:

@@ -68,13 +68,13 @@ class Names:
 
 
 class _FoundJoint(NamedTuple):
-    """A joint that an attachment refers to.
+    """Joint to which an attachment refers.
 
     Attributes:
         keys: All elements that represent the joint.
         built: The joint.
-        values: The bound values of its axes.
-        place: Index of its first DOF in the file.
+        values: Bound values of the joint's axes.
+        place: Index of the joint's first DOF in the file.
     """
 
     keys: tuple[Element, ...]
@@ -84,7 +84,7 @@ class _FoundJoint(NamedTuple):
 
 
 _LoopEnd = tuple[Element, int]
-"""An attachment of a joint that closes a loop, and the link that contains it."""
+"""Attachment of a joint that closes a kinematic loop, and the index of the link that contains it."""
 
 
 class ModelReader:
@@ -234,7 +234,7 @@ class ModelReader:
         return next((item.node for item in bound if item is not None and item.node is not None), None)
 
     def _joint(self, attachment: Element) -> tuple[Element, Element]:
-        """Return the element that an attachment refers to, and its ``<joint>``."""
+        """Return the element to which an attachment refers, and its ``<joint>``, which may be the same."""
         path = attachment.get("joint") or ""
         resolved = self._library.resolve(path, self.model)
         joint = None if resolved is None else resolved.element

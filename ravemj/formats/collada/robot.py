@@ -59,7 +59,7 @@ class ExtraReader:
                 self._read_collision(technique, scope)
 
     def _link(self, element: Element, scope: Element, attribute: str = "link") -> int | None:
-        """Return the index of the link named by an attribute; None, with a warning, if it does not exist."""
+        """Return the index of the link that an attribute names; None, with a warning, if it does not exist."""
         path = element.get(attribute) or ""
         index = self._found(path, scope, self.links)
         if index is None:
@@ -151,7 +151,7 @@ class ExtraReader:
 
 
 def _driven(axis: Axis, motor: Element) -> Axis:
-    """Return an axis with its motor's torque limit and inertia, both converted by the gear, and friction."""
+    """Return an axis with the friction of its motor, and its torque limit and inertia converted by the gear ratio."""
 
     def number(name: str) -> float:
         values = numbers(child(motor, name))

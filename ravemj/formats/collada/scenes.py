@@ -186,7 +186,7 @@ def _axis_infos(scene: SceneContext, part: Element) -> dict[Element, Element]:
 
 
 def _node_body(library: Library, geometry: GeometryReader, node: Node) -> BodyBuilder | None:
-    """Return the single-link body that OpenRAVE creates for a node; None if it shows no geometry."""
+    """Return the single-link body that OpenRAVE creates for a scene node; None if the node has no geometry."""
     source = library.source(node.element)
     name = valid_name(node.name)
     T_world_link = rigid_part(node.world, source)

@@ -116,7 +116,7 @@ class SystemWriter:
                 self._bind_axes(tree, index, scope)
 
     def _bind_axes(self, tree: Tree, index: int, scope: str) -> None:
-        """Bind the axes of a joint to their nodes and, if they are DOFs, to their values."""
+        """Bind a joint's axes to node transforms and, if they are DOFs, to joint values."""
         joint = self._joints[index]
         for place, axis in enumerate(joint.axes):
             name = f"joint{self._number}.{index}_axis{place}"

@@ -68,7 +68,7 @@ def _check_held(count: int, most: int, what: str, source: Source) -> None:
 
 
 class _Gltf:
-    """The JSON part of a glTF or GLB file."""
+    """JSON part of a glTF or GLB file."""
 
     def __init__(self, content: bytes, size: int, source: Source) -> None:
         check_json(content, source)
@@ -118,7 +118,7 @@ class _Gltf:
         return total
 
     def _shown(self) -> list[Entry]:
-        """Return the nodes of the scene; check that they form trees of limited depth."""
+        """Return all nodes of the scene; raise if they do not form trees, or the trees are too deep."""
         nodes = self._entries("nodes")
         scenes, number = self._entries("scenes"), cast("int", self._header.get("scene", 0))
         level: list[int] = scenes[number].get("nodes", []) if scenes else []

@@ -298,7 +298,7 @@ class _MjcfWriter:
         self._write_inertial(index, link, body, merging)
 
     def _source_text(self, source: Source) -> str:
-        """Return the source of a link for a comment, relative to the model's folder if this is known."""
+        """Return a comment with the source file and line of a link, relative to the model's folder if that is known."""
         folder = self.options.folder
         if folder is None or isinstance(source, Origin) or not os.path.exists(source.file):
             return str(source)

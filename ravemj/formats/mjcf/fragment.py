@@ -14,7 +14,7 @@ _REFUSED = {
     "compiler": "the model has angles in radians and meshes in assets/",
 }
 _SINGLE = {"option", "size", "visual", "statistic"}
-"""Sections of settings, in which a later value overrides an earlier one."""
+"""MJCF sections of settings, in which a later value overrides an earlier one."""
 
 
 def append(document: MjcfSections, path: AnyPath) -> None:

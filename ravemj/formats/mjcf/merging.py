@@ -31,7 +31,7 @@ class Merging:
 
     @cached_property
     def _merged(self) -> dict[int, tuple[int, Pose]]:
-        """For each merged link, the link into which it is merged, and its pose there."""
+        """For each merged link, the link into which it is merged, and its pose in that link."""
         merged: dict[int, tuple[int, Pose]] = {}
         pending = [link for link in range(len(self._body.links)) if link not in self.placing] if self._merges else []
         while pending:

@@ -142,7 +142,7 @@ class _FileContents:
             )
 
     def read_environment(self, element: Element) -> None:
-        """Read an ``<Environment>``: first its file, then its children."""
+        """Read an ``<Environment>``: first the file that it includes, then its children."""
         self.context.check_attributes(element, ENVIRONMENT_ATTRIBUTES, {})
         root = self.context.include(element)
         if root is not None:

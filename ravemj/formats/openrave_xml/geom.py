@@ -267,7 +267,7 @@ def _parts(geom: _Geom, file: MeshFile | None, element: Element, scope: Geometry
 
 
 def _found(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> MeshFile | None:
-    """Return a mesh file with its full path; None if it has no parts."""
+    """Return a mesh file with its full path; None if the file has no parts."""
     if file is None or not _parts(geom, file, element, scope):
         return None
     return file._replace(name=geom.context.find(file.name, element.source, *_folders(element, scope)) or file.name)
@@ -289,7 +289,7 @@ def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
 
 
 def _mesh_file(element: Element, diagnostics: Diagnostics) -> MeshFile:
-    """Read ``file [sx [sy [sz]]]``: one number is a uniform scale, a missing sz is sx."""
+    """Read ``file [sx [sy [sz]]]``: a single number scales all axes, a missing sz equals sx."""
     name = next(iter(words(element.text)), "")
     numbers = element.text[element.text.find(name) + len(name) :]
     if element.tag != "data":

@@ -37,7 +37,7 @@ def needs_values(body: KinBody) -> bool:
 
 
 def _initial(body: KinBody, index: int, axis: Axis) -> float:
-    """Return an axis's value at the written link poses; a joint without DOFs and mimic equation keeps its value."""
+    """Return an axis's value at the written link poses; a joint with neither DOFs nor an equation keeps its value."""
     return axis.value if rests(body, index) else axis.reference
 
 
@@ -107,7 +107,7 @@ class JointWriter:
                 self._out.element(tag, settled.direction(in_frame))
 
     def _check_weld(self, joint: Joint) -> None:
-        """Warn if a weld's axis is not z of its child, the axis that OpenRAVE assigns to welds in XML files."""
+        """Warn if a weld's axis is not the child's z axis, which OpenRAVE assigns to welds in XML files."""
         if not turns_about_z_of_child(joint):
             message = f"the axis of the weld '{joint.name}' is left out: in OpenRAVE XML it is the z axis of its child"
             self._diagnostics.warn("not-written", message, joint.source)

@@ -187,7 +187,7 @@ def follow(joints: Mapping[str, UrdfJoint], built: Mapping[str, JointBuilder], c
 
 
 def _with_room(axis: Axis, leader: Axis, factor: float, offset: float) -> Axis:
-    """Return a mimic joint's axis; if its range is empty, it is computed from the leader's range."""
+    """Return a mimic joint's axis; an empty range is replaced by the range that follows from the leader's."""
     if axis.circular or axis.lower < axis.upper:
         return axis
     lower, upper = sorted((leader.lower * factor + offset, leader.upper * factor + offset))

@@ -193,7 +193,7 @@ class _Srdf:
     # Manipulators
 
     def _add_manipulators(self) -> None:
-        """Add a manipulator for each end effector, then one for each other group that is a serial chain."""
+        """Add a manipulator for each end effector, then one for each remaining group that is a serial chain."""
         arms: dict[str, ManipulatorBuilder] = {}
         used: set[str] = set()
         for element in children(self.root, "end_effector"):
@@ -294,7 +294,7 @@ _PARTS = {"chain": _Srdf.add_chain, "joint": _Srdf.add_joint, "link": _Srdf.add_
 
 
 def _values(body: BodyBuilder, state: Mapping[str, float]) -> list[float]:
-    """Return the values of all DOFs: those of a state, and for other DOFs the value nearest to 0 within limits."""
+    """Return the values of all DOFs: from ``state``, and for other DOFs the value within limits nearest to 0."""
     axes = {joint.name: joint.axes[0] for joint in body.joints if joint.active}
     nearest = {name: 0.0 if axis.circular else min(max(axis.lower, 0.0), axis.upper) for name, axis in axes.items()}
     return [state.get(name, value) for name, value in nearest.items()]

@@ -216,7 +216,7 @@ class _UrdfWriter:
             out.element("inertia", ixx=xx, ixy=xy, ixz=xz, iyy=yy, iyz=yz, izz=zz)
 
     def _joint(self, index: int, joint: Joint) -> None:
-        """Write a joint, with massless links if it has several axes or its axis misses the child's origin."""
+        """Write a joint; add massless links if it has several axes or its axis misses the child's origin."""
         name, parent, child = self.joints[index], self.links[joint.parent], self.links[joint.child]
         if index not in self._moving:
             self._fixed(name, parent, child, self._merging.pose_in_parent(joint.child))

@@ -46,7 +46,7 @@ _SAMPLES = 4
 
 _SPARE_GEOMS = 1000
 _MAX_FIGURES = 300_000
-"""Maximum number of drawn primitives in one picture, for which MuJoCo takes a second to allocate memory."""
+"""Maximum number of drawn primitives in one picture; MuJoCo needs a second to allocate memory for so many."""
 
 _SMALLEST = 1e-3
 """Minimum radius of a drawing's bounding sphere [m], for instance of a single point."""
@@ -58,10 +58,10 @@ FLOOR_MATERIAL = "floor"
 """Name of the material with the floor's grid in MJCF files."""
 
 _FLOOR_BELOW = 1e-4
-"""Gap between the bodies and the drawn floor [radii of the scene]; a floor of the model hides it."""
+"""Gap between bodies and drawn floor, relative to the radius of the scene, so that a floor of the model hides it."""
 
 _painting = threading.Lock()
-"""Lock held while the texture of a model contains a background colour."""
+"""Lock held while the model's texture temporarily contains a background colour."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -163,7 +163,7 @@ class GlScene:
             self._add_floor(self._floor, camera)
 
     def _add_floor(self, floor: Floor, camera: Camera) -> None:
-        """Append the floor, in colours that are corrected for the lighting, with fog towards the horizon."""
+        """Append the floor with fog towards the horizon; its colour is corrected for the lighting."""
         start, end = floor.fading(camera)
         half = floor.cell * np.ceil(FLOOR_REACH * end / floor.cell)
         middle = floor.cell * np.rint(camera.position[:2] / floor.cell)
@@ -339,7 +339,7 @@ def _find_skybox(model: mujoco.MjModel) -> int | None:
 
 @block
 def _quality_of(model: mujoco.MjModel, quality: Quality) -> Generator[None]:
-    """Set the quality fields of the model that ``MjrContext`` reads, and restore them at the end of the block."""
+    """Set the model fields for quality that ``MjrContext`` reads; restore them at the end of the block."""
     sizes: Sequence[tuple[object, str, int]] = (
         (model.vis.global_, "offwidth", quality.width),
         (model.vis.global_, "offheight", quality.height),

@@ -33,7 +33,7 @@ _LAYERS = 6
 """Maximum number of transparent surfaces along a ray."""
 
 _EDGE = 12
-"""Difference between neighbouring pixels (0..255) above which an edge is antialiased."""
+"""Colour difference between adjacent pixels (0..255) above which both are antialiased."""
 
 _SUBPIXELS = np.array([(-0.125, -0.375), (0.375, -0.125), (0.125, 0.375), (-0.375, 0.125)])
 
@@ -47,7 +47,7 @@ _TWO_WALLS = (
     mujoco.mjtGeom.mjGEOM_CYLINDER,
     mujoco.mjtGeom.mjGEOM_BOX,
 )
-"""Convex shapes, which a ray enters and leaves once; a ray that hits a back face started inside."""
+"""Convex geom types, which a ray enters and leaves once: if it hits a back face, it started inside."""
 
 
 class RayRenderer(Renderer):

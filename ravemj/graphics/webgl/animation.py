@@ -22,10 +22,10 @@ from ravemj.graphics.webgl.surfaces import surfaces
 from ravemj.model.drawing import NOTHING, Primitives
 
 _HEIGHT = 480
-"""Height of a page in a notebook [pixels]."""
+"""Height of an animation in a notebook [px]."""
 
 _STILL = 1e-9
-"""Movement below which bodies count as static [m, and components of a unit quaternion]."""
+"""Movement below which a body counts as static [m, or component of a unit quaternion]."""
 
 
 class Recording(NamedTuple):

@@ -70,7 +70,7 @@ def parse_nodes(text: str, variables: Collection[str]) -> Node:
 
 
 class _EquationParser:
-    """Recursive-descent parser of one text."""
+    """Recursive-descent parser of an equation."""
 
     def __init__(self, text: str, variables: Collection[str]) -> None:
         self._text = text
@@ -183,7 +183,7 @@ class _EquationParser:
 
 
 def _tokens(text: str) -> list[Token]:
-    """Split the text into tokens; the last one marks the end."""
+    """Split the text into tokens; the last one is of the kind "end"."""
     tokens: list[Token] = []
     position = 0
     while not tokens or tokens[-1].kind != "end":

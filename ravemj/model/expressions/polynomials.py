@@ -13,7 +13,7 @@ MAX_PRODUCTS = 1000  # maximum number of terms in one multiplication, against ma
 Coefficients = tuple[float, ...]  # ascending
 
 _Polynomial = dict[tuple[str, ...], float]
-"""Nonzero coefficients by product of variables: the key of x^2 y is ("x", "x", "y"), that of the constant ()."""
+"""Nonzero coefficients by monomial: the key of x^2 y is ("x", "x", "y"), the key of the constant is ()."""
 
 
 def coefficients(nodes: list[Node], variable: str, max_degree: int) -> Coefficients | None:

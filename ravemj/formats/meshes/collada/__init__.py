@@ -86,7 +86,7 @@ class _Flattening:
         self.pieces: dict[str, list[Floats]] = {}
 
     def material(self, name: str) -> ColladaMaterial:
-        """Return a material; a default one if the file has none of this name."""
+        """Return the material of a name, or a default material if the file has none."""
         return self._materials.get(name, ColladaMaterial())
 
     def nodes(self, parent: Element, matrix: Floats, depth: int) -> None:

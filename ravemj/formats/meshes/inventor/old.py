@@ -64,7 +64,7 @@ def _include(traversal: Traversal, node: InventorNode, state: TraversalState) ->
 
 
 def _moving(matrix: Callable[[InventorNode], Floats]) -> Handler:
-    """Return the handler of a transform; ``matrix`` returns its 4x4 matrix."""
+    """Return the handler of a transform node; ``matrix`` computes the node's 4x4 transform."""
     return lambda _traversal, node, state: moved(state, matrix(node))
 
 
