@@ -136,7 +136,7 @@ def _clearer(
 
 
 def _wrong_type(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[str, str] | None:
-    """Return function and argument name of the first argument of a wrong type, and a description; else None."""
+    """Return names of function and argument, and a description, for the first argument of a wrong type, else None."""
     try:
         given = signature(function).bind(*args, **kwargs)
     except TypeError:  # its message names the argument that is missing or unknown

@@ -38,7 +38,7 @@ RENAMED: dict[str, str] = dict(re.findall(r"(\S+)=(\S+)", _RENAMED))
 
 
 def _in(module: str, names: str) -> dict[str, object]:
-    """Map Python 2 names to their locations in ``module``; ``old=new`` in ``names`` stands for a renamed one."""
+    """Map Python 2 names to their locations in ``module``; ``names`` contains ``old=new`` for a renamed name."""
     return {name: f"{module}.{now or name}" for name, now in re.findall(r"([^\s=]+)=?(\S*)", names)}
 
 

@@ -162,7 +162,7 @@ class _FormulaReader:
         return text
 
     def _call(self, function: Element, texts: list[str], depth: int) -> str:
-        """Return the expression of a function call, where the file defines the function or OpenRAVE knows its name."""
+        """Return the expression of a call of a function that the file defines, or that OpenRAVE knows by name."""
         name = "".join(words(function))
         if name in NAMED:  # OpenRAVE has three of them: SSSA, SASA and SASS
             return f"{name}({','.join(texts)})"

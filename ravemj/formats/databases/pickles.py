@@ -32,7 +32,7 @@ class _ArrayUnpickler(pickle.Unpickler):
 
 
 def _encoder() -> Callable[[str, str], bytes]:
-    """Return a ``_codecs.encode`` for Python 2's pickles: only Latin-1, and new, since a pickle may modify it."""
+    """Return a new ``_codecs.encode`` that permits only Latin-1; a pickle could modify a shared one."""
 
     def encode(text: str, encoding: str = "latin1") -> bytes:
         if encoding != "latin1":

@@ -106,7 +106,7 @@ class _Geom(Placed):
         self.render = self._first(self.render, element)
 
     def _first(self, before: MeshFile | None, element: Element) -> MeshFile:
-        """Return ``before`` if it names a file, with a warning; else the file that the element names."""
+        """Return the first file of the geom: ``before`` (with a warning), or else the file that the element names."""
         self.context.check_attributes(element, {} if element.tag == "data" else MESH_ATTRIBUTES, {})
         if before is None or not before.name:
             return _mesh_file(element, self.context.diagnostics)

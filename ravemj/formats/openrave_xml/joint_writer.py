@@ -113,7 +113,7 @@ class JointWriter:
             self._diagnostics.warn("not-written", message, joint.source)
 
     def _slider_frame(self, joint: Joint) -> int:
-        """Return the link whose origin is a slider's anchor: the child if its origin alone fits, else the parent."""
+        """Return the link whose origin is a slider's anchor: the child if only its origin is there, else the parent."""
         parent, child = self._poses[joint.parent], self._poses[joint.child]
         anchor = parent.apply(joint.anchor)
         near = [math.dist(link.position, anchor) < _NEAR for link in (parent, child)]

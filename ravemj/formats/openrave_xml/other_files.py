@@ -95,7 +95,7 @@ def uniform(scale: Vec3, source: Source, context: Context) -> float:
 
 
 def _join(body: BodyBuilder, other: BodyBuilder) -> None:
-    """Merge ``other`` into ``body`` by link names, after moving it to where its first link coincides in both."""
+    """Move ``other`` so that its first link, if ``body`` has it, coincides; then merge equally named links."""
     places = [body.find_link(link.name) for link in other.links]
     T_body_other = Pose()
     if places[0] is not None:

@@ -218,7 +218,7 @@ def _several(arity: int, roots: Roots, most_roots: int) -> Function:
 
 
 def _root(arity: int, roots: Roots, index: int) -> Function:
-    """Create a function that returns the value ``index`` of ``roots``, or nan if there are fewer."""
+    """Create a function that returns the root number ``index``, or nan if ``roots`` returns fewer."""
 
     def root(*arguments: float) -> float:
         values = roots(*arguments)
