@@ -13,7 +13,7 @@ class ShownPath(type(Path())):
     """The path of a video. As the result of a notebook cell it embeds the video."""
 
     def _repr_html_(self) -> str | None:
-        """Return HTML that shows the file in a notebook; None if browsers cannot display it, or if it is too large."""
+        """Return HTML for notebooks; None if the file is missing, too large, or of a type that browsers cannot show."""
         kind = _TYPES.get(self.suffix.lower())
         if kind is None or not self.is_file() or self.stat().st_size > _MOST_BYTES:
             return None
