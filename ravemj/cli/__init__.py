@@ -70,7 +70,7 @@ def _run(arguments: Sequence[str]) -> int:
 
 
 def _explain(error: OSError) -> None:
-    """Print an operating system error; an error without file name concerns standard output."""
+    """Print the message of an operating system error; without a file name, it concerns standard output."""
     reason = (error.strerror or str(error)).lower()
     if error.filename is not None:
         print_error(RavemjError(f"{error.filename}: {reason}"))

@@ -34,7 +34,6 @@ class Parser(argparse.ArgumentParser):
             self.error(f"unknown: {' '.join(unknown)}{did_you_mean(unknown[0], self._option_string_actions)}")
 
     def _unknown_options(self, words: Sequence[str]) -> list[str]:
-        """Return the words that look like options but are not options of this command."""
         # The words after the first positional one are for a subparser or a script.
         passes_on = any(action.nargs in {argparse.PARSER, argparse.REMAINDER} for action in self._actions)
         unknown: list[str] = []

@@ -126,7 +126,7 @@ def colour(text: str) -> list[float]:
 
 
 def _colour_of_name(text: str) -> list[float]:
-    """Return the colour of a CSS name or of hexadecimal digits."""
+    """Return the RGB colour, in [0, 1], of a CSS name or hexadecimal digits."""
     from PIL import ImageColor  # noqa: PLC0415 - slow to import
 
     try:

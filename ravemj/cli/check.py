@@ -40,7 +40,7 @@ def check(options: argparse.Namespace) -> int:
 
 
 def _key(finding: Diagnostic) -> tuple[object, ...]:
-    """Return a key that is equal for reports of the same problem, independent of how the path is written."""
+    """Return a key that is equal for diagnostics of the same problem, however the file's path is written."""
     return os.path.realpath(finding.source.file), finding.source.line, finding.code, finding.message
 
 

@@ -54,7 +54,7 @@ def _fatal(error: SourceError) -> Diagnostic:
 
 
 def _outside_files(path: str | os.PathLike[str], named: Mapping[str, Source]) -> Iterator[Diagnostic]:
-    """Yield a note for each file outside of a model's folder, which may be missing on other machines."""
+    """Yield a note for each referenced file outside the model's folder, as it may be missing on other machines."""
     folder = os.path.dirname(os.path.abspath(path))
     if os.fspath(path).lower().endswith(".urdf"):
         folder = os.path.dirname(folder)  # packages have a folder for URDF, and others beside it for meshes

@@ -41,7 +41,7 @@ def manipulators(prefix: str, parsed_args: argparse.Namespace, **_: object) -> l
 
 
 def _robots(options: argparse.Namespace) -> "list[Robot]":
-    """Return the robots of the command's model; none if it is not given yet or cannot be read."""
+    """Return the robots of the model on the command line; empty if it is missing or cannot be read."""
     from ravemj.cli.models import loaded  # noqa: PLC0415 - slow to import
 
     with warnings.catch_warnings(), contextlib.suppress(RavemjError):

@@ -45,7 +45,7 @@ def print_findings(findings: Iterable[Diagnostic], file: TextIO | None = None) -
 
 
 def _more(count: int, places: Sequence[str]) -> str:
-    """Return the text about further diagnostics: their number, and the sources of the first ones."""
+    """Return a text such as `` (and 3 more: …)`` with the sources of further diagnostics; empty if there are none."""
     if not count:
         return ""
     rest = ["…"] if len(places) > _PLACES else []

@@ -60,11 +60,7 @@ def choices_of(options: argparse.Namespace) -> TranslationChoices:
 
 
 def _format_of(output: str) -> str:
-    """Return the format of a target by its suffix.
-
-    Raises:
-        OutputError: the suffix is unknown.
-    """
+    """Return an output file's format by its suffix, MJCF for standard output and folders; raise if unknown."""
     if output == TO_STANDARD_OUTPUT or is_folder(output):
         return "mjcf"
     form = format_of(output)
@@ -76,7 +72,7 @@ def _format_of(output: str) -> str:
 
 
 def _save(env: Environment, options: argparse.Namespace, kind: str) -> int:
-    """Write a model in one of OpenRAVE's formats."""
+    """Write a model in a format of OpenRAVE, not MJCF; return the exit code."""
     if options.output == TO_STANDARD_OUTPUT:
         raise OutputError(f"a model in the format {kind} needs a file; write -o FILE")
     if choices_of(options)._replace(state=None) != TranslationChoices():
@@ -91,7 +87,7 @@ def _save(env: Environment, options: argparse.Namespace, kind: str) -> int:
 
 
 def _report(findings: Sequence[Diagnostic], options: argparse.Namespace) -> None:
-    """Print diagnostics; with ``--strict`` they are errors."""
+    """Print diagnostics; with ``--strict``, raise them as errors instead."""
     if findings and options.strict:
         raise failure_of(findings)
     print_findings(findings)

@@ -22,7 +22,7 @@ from ravemj.rave.grasping import grasps
 from ravemj.rave.manipulator import Manipulator
 
 _SHOWN = 10
-"""Maximum number of grasps, without nearly equal ones, that are simulated, printed and shown."""
+"""Maximum number of grasps to simulate, print and show; nearly equal ones count once."""
 
 _AHEAD = 0.5  # m, from the base to the place of a target that nobody placed
 _FLOOR_GAP = 0.001  # m, below the lowest point of the robot, so that its base does not touch the floor
@@ -51,7 +51,7 @@ def grasp(options: argparse.Namespace) -> int:
 
 
 def _hand_of(robots: Sequence[Robot], name: str | None) -> Manipulator:
-    """Return the manipulator with a name; by default the active one if it has a gripper, else the first with one."""
+    """Return the manipulator ``name``; by default the active one if it has a gripper, else the first that has one."""
     arm = arm_of(robots, name)
     if name is not None or arm.GetGripperDOF():
         return arm
@@ -60,7 +60,7 @@ def _hand_of(robots: Sequence[Robot], name: str | None) -> Manipulator:
 
 
 def _found(robot: Robot, target: KinBody, options: argparse.Namespace) -> tuple[Grasps, str]:
-    """Return the grasps that the arm reaches, or else the grasps of the hand alone, and a note about this."""
+    """Return the grasps that the arm can reach, or if there are none, those of the hand alone with a note why."""
     find = partial(grasps, robot, target, method=options.method, friction=options.friction, proofs=_SHOWN)
     unsolvable = _unsolvable(robot)
     if unsolvable:
@@ -86,10 +86,10 @@ def _unsolvable(robot: Robot) -> str:
 
 
 def _target(env: Environment, robot: Robot, options: argparse.Namespace) -> KinBody:
-    """Return the body to grasp, at its pose.
+    """Return the body to grasp, placed at ``--at`` or, if it was loaded from a file, on a floor.
 
     Raises:
-        ArgumentError: the name is that of the robot, or the file does not have exactly one body.
+        ArgumentError: The name is that of the robot, or the file does not contain exactly one body.
     """
     body = env.GetKinBody(options.target)
     if body is robot:
@@ -105,7 +105,7 @@ def _target(env: Environment, robot: Robot, options: argparse.Namespace) -> KinB
 
 
 def _loaded(env: Environment, name: str) -> KinBody:
-    """Load the body of a file or shipped model."""
+    """Load a file or shipped model that contains exactly one body; return this body."""
     path, before = model_file(name), env.GetBodies()
     if not os.path.exists(path):
         names = ", ".join(body.GetName() for body in before)
@@ -129,7 +129,7 @@ def _pose(numbers: Sequence[float], body: KinBody) -> Floats:
 
 
 def _put_down(env: Environment, robot: Robot, body: KinBody) -> None:
-    """Place a body on a floor at the height of the robot's lowest point, in front of its base."""
+    """Add a floor at the height of the robot's lowest point, and place a body on it in front of the robot's base."""
     box = robot.ComputeAABB()
     height = float(box.pos()[2] - box.extents()[2]) - _FLOOR_GAP
     T_base, T = robot.GetTransform(), body.GetTransform()
@@ -146,7 +146,6 @@ def _put_down(env: Environment, robot: Robot, body: KinBody) -> None:
 
 
 def _print(arm: Manipulator, target: KinBody, result: Grasps, note: str) -> None:
-    """Print the best grasps, and the number of rejected candidates by reason."""
     if result:
         title = f"Grasps of '{target.GetName()}' by '{arm.GetName()}' of '{arm.GetRobot().GetName()}', the best first"
         rows = table(title, "#>", "quality>", "epsilon>", "contacts>", "weakest", "shaken")

@@ -39,7 +39,7 @@ _LEGEND = (
 
 
 class _DrawnHand(NamedTuple):
-    """Copy of the robot that shows a grasp by its hand."""
+    """Copy of the robot of which only the hand is visible, at a grasp."""
 
     robot: Robot
     gripper: list[int]
@@ -50,7 +50,7 @@ class _DrawnHand(NamedTuple):
 
 
 class _DrawnArm(NamedTuple):
-    """Copy of the robot that shows a grasp; ``rows`` are values of the arm from the grasp back along the approach."""
+    """Copy of the robot at a grasp; ``rows`` are arm configurations along the retreat from the grasp."""
 
     robot: Robot
     joints: list[int]
@@ -124,7 +124,6 @@ def _copied(env: Environment, body: KinBody, number: int) -> KinBody:
 
 
 def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, number: int) -> _DrawnHand:
-    """Add a copy of the robot of which only the hand is visible."""
     robot = cast("Robot", RaveCreateRobot(env, ""))
     robot.Clone(arm.GetRobot(), 0)
     robot.SetName(f"{arm.GetRobot().GetName()} {number}")
@@ -145,7 +144,7 @@ def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, num
 
 
 def _arm(env: Environment, arm: Manipulator, body: KinBody, target: KinBody, grasp: Grasp) -> _DrawnArm:
-    """Add a copy of the robot with its approach; it has the robot's pose relative to ``body``, a copy of the target."""
+    """Add a copy of the robot that approaches ``body``, a copy of the target, from the same relative pose."""
     T_world_target = body.GetTransform()
     robot = cast("Robot", RaveCreateRobot(env, ""))
     robot.Clone(arm.GetRobot(), 0)

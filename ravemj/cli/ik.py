@@ -82,7 +82,7 @@ def _reach(options: argparse.Namespace) -> int:
 
 
 def _kind(options: argparse.Namespace) -> IkParameterizationType:
-    """Return the goal type: the given one, else a point for three numbers and a pose for seven."""
+    """Return the goal type of ``--type``; by default a point for three numbers, else a pose."""
     if options.type is not None:
         return IkParameterizationType[options.type]
     is_point = options.to is not None and len(options.to) == _POINT
@@ -90,10 +90,10 @@ def _kind(options: argparse.Namespace) -> IkParameterizationType:
 
 
 def _goal(options: argparse.Namespace) -> Floats:
-    """Return the goal as an argument of ``Manipulator.ik``.
+    """Return the goal of ``--to`` as an argument of ``Manipulator.ik``.
 
     Raises:
-        ArgumentError: its type has another number of values.
+        ArgumentError: The number of values does not fit the goal type.
     """
     kind, numbers = _kind(options), options.to
     size = _POSE if kind == IkParameterizationType.Transform6D else goal_size(kind)

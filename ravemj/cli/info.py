@@ -45,7 +45,7 @@ def _headline(body: KinBody) -> str:
 
 
 class _KinematicTree:
-    """Prints the kinematic tree of a body: each link below its parent, with the joint between them."""
+    """Text of a body's kinematic tree: each link below its parent, with the joint between them."""
 
     def __init__(self, body: KinBody, width: int) -> None:
         self._body = body
@@ -58,7 +58,6 @@ class _KinematicTree:
             self._children.setdefault(self._joints[number].parent, []).append(child)
 
     def lines(self) -> Iterator[str]:
-        """Yield the lines of the tree."""
         roots = [index for index in range(len(self._body.links)) if index not in self._placing]
         pending = [(root, "", "") for root in reversed(roots)]
         while pending:
@@ -74,7 +73,7 @@ class _KinematicTree:
                 yield f"{joint.name} closes a loop between {' and '.join(_ends(self._body, joint))}"
 
     def _entry(self, index: int, first: str, rest: str) -> Iterator[str]:
-        """Yield a link and its joint in one line, or in two lines if it would be too long."""
+        """Yield a link and its joint in one or two lines, which start with the branches ``first`` and ``rest``."""
         link = self._body.links[index]
         name = f"{first}{link.name}  {_number(link.inertial.mass)} kg{', static' if link.static else ''}"
         number = self._placing.get(index)
@@ -204,7 +203,7 @@ def _number(value: float) -> str:
 
 
 def _ranges(numbers: Sequence[int]) -> str:
-    """Format 0 1 2 3 7 as ``0-3 7``."""
+    """Format increasing numbers with ranges: 0 1 2 3 7 as ``0-3 7``."""
     runs: list[list[int]] = []
     for number in numbers:
         if runs and number == runs[-1][-1] + 1:

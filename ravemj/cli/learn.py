@@ -132,7 +132,7 @@ def _watch(course: Course, progress: Progress, wanted: list[Exercise]) -> int:
 
 
 def _report_saved(course: Course, progress: Progress, saved: list[Exercise], others: Sequence[Exercise]) -> None:
-    """Check the saved exercises; name the next one if they are solved or if none was saved."""
+    """Check the saved exercises; if all are solved or none was saved, name the next exercise of ``others``."""
     verdicts = [_checked(progress, exercise) for exercise in saved]
     for exercise, verdict in zip(saved, verdicts, strict=True):
         print(f"{report(exercise, verdict)}\n", flush=True)

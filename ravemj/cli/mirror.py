@@ -67,11 +67,7 @@ def _say(text: str) -> None:
 
 
 def _source(states: JointStates, options: argparse.Namespace) -> Callable[[], None]:
-    """Return the function that receives states, to be run in a thread of its own.
-
-    Raises:
-        SourceError: the file of lines cannot be read.
-    """
+    """Return the function that receives joint states in a thread; raise if the CSV file cannot be read."""
     if options.rosbridge is not None:
         return lambda: follow_rosbridge(options.rosbridge, options.topic, _PERIOD, states, _say)
     is_input = options.csv == _STANDARD_INPUT
@@ -87,7 +83,7 @@ def _source(states: JointStates, options: argparse.Namespace) -> Callable[[], No
 
 
 def _update(robot: Robot, states: JointStates) -> None:
-    """Set the robot to the latest state, which may exceed its limits."""
+    """Set the robot to the latest joint state, which may exceed the joint limits."""
     values = states.pop()
     if values:
         names = robot.simulation_state.scene.dof_names
@@ -96,7 +92,7 @@ def _update(robot: Robot, states: JointStates) -> None:
 
 
 def _ghost_motion(env: Environment, robot: Robot, options: argparse.Namespace) -> tuple[Robot, Motion]:
-    """Add a transparent copy of the robot, and return it with its motion."""
+    """Add a transparent copy of the robot; return the copy and its motion, from the options' file."""
     followed, dofs = followed_file(env.simulation, motion_file(env, options)), range(robot.GetDOF())
     before, rows = robot.GetDOFValues(), list[Floats]()
     times = list(followed.frame_times(1 / _PERIOD))

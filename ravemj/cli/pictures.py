@@ -75,11 +75,7 @@ def play(options: argparse.Namespace) -> int:
 
 
 def _check_length(motion: BodyMotion, fps: float) -> None:
-    """Check that a video of a motion would not fill the disk.
-
-    Raises:
-        ArgumentError: the motion has too many frames.
-    """
+    """Raise if a video of the motion would have more than ``_MOST_FRAMES`` frames."""
     count = number_of_frames(motion.duration, fps)
     if count > _MOST_FRAMES:
         length = f"{motion.duration:g} s at {fps:g} frames a second are {count:.3g} frames"
@@ -96,7 +92,7 @@ def _motion(env: Environment, options: argparse.Namespace) -> BodyMotion:
 
 
 def _line(env: Environment, options: argparse.Namespace) -> tuple[Robot, Motion]:
-    """Return the moving robot, and its straight-line motion to the joint values of ``--to``."""
+    """Return the moving robot, and a straight-line joint motion from its present values to those of ``--to``."""
     robot = moving_robot(env, options.robot)
     start = robot.GetDOFValues()
     if options.to is None:
@@ -107,7 +103,7 @@ def _line(env: Environment, options: argparse.Namespace) -> tuple[Robot, Motion]
 
 
 def _play_to_robot(options: argparse.Namespace) -> int:
-    """Write a motion for a robot controller."""
+    """Write the motion to a file for a robot controller; return the exit code."""
     check_joint_trajectory_file(options.output)
     env = load_model(options)
     if options.trajectory is not None:
@@ -120,11 +116,7 @@ def _play_to_robot(options: argparse.Namespace) -> int:
 
 
 def _checked_values(option: str, values: list[float], body: KinBody) -> list[float]:
-    """Return the joint values of an option, one for each DOF.
-
-    Raises:
-        ArgumentError: the number of values is wrong.
-    """
+    """Return the joint values of an option; raise unless there is one for each DOF."""
     dof = body.GetDOF()
     if len(values) != dof:
         names = ", ".join(body.simulation_state.scene.dof_names)

@@ -69,7 +69,7 @@ def plan(options: argparse.Namespace) -> int:
 
 
 def _goal(robot: Robot, arm: Manipulator | None, regions: list[Region], options: argparse.Namespace) -> MotionGoal:
-    """Return the moving joints and the goal."""
+    """Return the moving DOFs and the goal: goal regions, joint values, or IK solutions of a pose."""
     if arm is not None and regions:
         dofs = [*arm.GetArmIndices().tolist(), *preshaped_dofs(arm, regions)]
         return MotionGoal(dofs, np.zeros((0, len(dofs))), regions)
@@ -78,7 +78,7 @@ def _goal(robot: Robot, arm: Manipulator | None, regions: list[Region], options:
 
 
 def _about_itself(told: str, robot: Robot, model: str) -> str:
-    """Return a hint if the robot collides with itself at the start, which is common without an SRDF."""
+    """Return a hint if the message ``told`` is that the robot's start is in self-collision, common without an SRDF."""
     if not told.startswith("start:") or told.count(f"of '{robot.GetName()}'") != 2:
         return ""
     return f"; ravemj check {model} --self lists links that always touch, and --write-srdf lets them"
@@ -93,11 +93,7 @@ def _arm(env: Environment, options: argparse.Namespace) -> Manipulator | None:
 
 
 def _values(robot: Robot, arm: Manipulator | None, options: argparse.Namespace) -> tuple[list[int], Floats]:
-    """Return the DOF indices of the moving joints, and the joint values of ``--to``.
-
-    Raises:
-        ArgumentError: the number of values is neither that of the arm's DOFs nor that of all DOFs.
-    """
+    """Return the moving DOFs and the values of ``--to``, shape (1, n): of all DOFs or of the arm's, else raise."""
     every = list(range(robot.GetDOF()))
     dofs = every if arm is None else arm.GetArmIndices().tolist()
     if len(options.to) == len(every):
@@ -111,12 +107,7 @@ def _values(robot: Robot, arm: Manipulator | None, options: argparse.Namespace) 
 
 
 def _solutions(arm: Manipulator | None, pose: Sequence[float]) -> tuple[list[int], Floats]:
-    """Return the DOF indices of the arm, and its IK solutions of a pose or point, nearest first.
-
-    Raises:
-        ArgumentError: the number of values is neither that of a pose nor that of a point.
-        RavemjError: there is no valid solution.
-    """
+    """Return the arm's DOFs and its valid IK solutions for a pose or point, nearest first; raise if there is none."""
     assert arm is not None
     if len(pose) not in {_POSE, _POINT}:
         raise ArgumentError(f"--pose: found {len(pose)}, expected x,y,z,qw,qx,qy,qz or x,y,z")
@@ -136,7 +127,6 @@ def _solutions(arm: Manipulator | None, pose: Sequence[float]) -> tuple[list[int
 
 
 def _planned(robot: Robot, arm: Manipulator | None, goal: MotionGoal, options: argparse.Namespace) -> tuple[Plan, str]:
-    """Plan; return the result and a text about the search."""
     robot.SetActiveDOFs(goal.dofs)
     params = Planner.PlannerParameters()
     params.SetRobotActiveJoints(robot)
@@ -174,7 +164,7 @@ def _planned(robot: Robot, arm: Manipulator | None, goal: MotionGoal, options: a
 
 
 def _reasons(status: Planner.PlannerStatus) -> list[str]:
-    """Return for each region a text with the number of sampled poses by cause of rejection."""
+    """Return a text for each goal region with the numbers of its sampled poses by cause of rejection."""
     return [
         f"{sum(counts.values())} poses of region '{name}': "
         + ", ".join(f"{number} {cause}" for cause, number in counts.items())
@@ -186,7 +176,7 @@ def _reasons(status: Planner.PlannerStatus) -> list[str]:
 def _outcome(
     robot: Robot, traj: Trajectory, options: argparse.Namespace
 ) -> tuple[Motion, JointTrajectory | None, Certificate | None]:
-    """Return the motion of a trajectory, its points for a robot controller if requested, and the certificate."""
+    """Return a trajectory's motion, and its points for a controller and its certificate, None if not requested."""
     motion, points = _motion(robot, traj), None
     if options.output is not None and is_joint_trajectory(options.output):
         start = None if options.start is None else start_values(options.start, robot)
@@ -198,7 +188,7 @@ def _outcome(
 
 
 def _certificate(robot: Robot, motion: Motion) -> Certificate:
-    """Certify a motion as it is written: straight lines between its rows."""
+    """Certify a motion as it is written to a file: straight joint-space lines between its rows."""
     spec = robot.GetConfigurationSpecificationIndices(range(robot.GetDOF()), "linear")
     spec.AddDeltaTimeGroup()
     traj = Trajectory(robot.GetEnv(), "")
@@ -208,7 +198,7 @@ def _certificate(robot: Robot, motion: Motion) -> Certificate:
 
 
 def _motion(robot: Robot, traj: Trajectory) -> Motion:
-    """Convert a trajectory to a motion of all DOFs of a robot."""
+    """Sample a trajectory of the active DOFs; return the motion of all DOFs of the robot."""
     times = np.append(np.arange(0.0, traj.GetDuration() - _STEP / 2, _STEP), traj.GetDuration())
     values = np.tile(robot.GetDOFValues(), (len(times), 1))
     values[:, robot.GetActiveDOFIndices()] = traj.SamplePoints2D(times, robot.GetActiveConfigurationSpecification())

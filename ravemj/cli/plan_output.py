@@ -108,7 +108,7 @@ def write(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> Non
 
 
 def _add_examples(plan: Plan) -> None:
-    """Add a transparent copy of the robot at the example of each cause of rejection."""
+    """Add transparent copies of the robot at the rejected configurations, one for each cause."""
     for cause, values in plan.examples.items():
         if len(values):
             add_ghost(plan.robot, cause, values, plan.dofs)
@@ -178,7 +178,7 @@ def _segments(plan: Plan, nodes: Floats, lines: Sequence[tuple[int, int]]) -> Fl
 
 
 def _hand(plan: Plan, values: Floats) -> Floats:
-    """Return the tool positions in the world for configurations, shape (n, 3); without an arm, of the last link."""
+    """Return the world positions of the tool, or without an arm of the last link's centre of mass, shape (n, 3)."""
     if plan.arm is None:
         link = plan.robot.GetLinks()[-1]
         place = np.nan_to_num(link.GetLocalCOM())

@@ -95,11 +95,7 @@ def _region(given: object, name: str, path: str, env: Environment) -> Region:
 
 
 def _frame(text: str, env: Environment) -> KinBody | Link:
-    """Return the body ``BODY`` or the link ``BODY/LINK``.
-
-    Raises:
-        ArgumentError: it does not exist.
-    """
+    """Return the body ``BODY`` or the link ``BODY/LINK`` that ``text`` names; raise if there is none."""
     body = env.GetKinBody(text)
     if body is not None:
         return body

@@ -68,10 +68,10 @@ class Reloader:
         notices.say(f"Read {os.path.basename(model_file(self._options.model))} again")
 
     def _read(self) -> Environment:
-        """Load the present model into a new environment.
+        """Load the model's changed files into a new environment.
 
         Raises:
-            RavemjError: it cannot be read, or MuJoCo rejects it.
+            RavemjError: The files cannot be read, or MuJoCo rejects the model.
         """
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RavemjWarning)
@@ -110,7 +110,7 @@ class Reloader:
         self._stamps = _stamps(self._files)
 
     def _watch_also(self, source: Source) -> None:
-        """Also watch a file that could not be read."""
+        """Watch a file that could not be read, in addition to the others."""
         if source.file not in self._files:
             self._files = (*self._files, source.file)
             self._stamps = _stamps(self._files)
@@ -121,7 +121,7 @@ def _is_error(finding: Diagnostic) -> bool:
 
 
 def _found_again(selected: Selection | None, env: Environment) -> Selection | None:
-    """Return the selection with the same names in the new model, or None."""
+    """Return the selection of the equally named link and DOF in a new environment; None if one is missing."""
     body = None if selected is None else env.GetKinBody(selected.body.scene.name)
     if selected is None or body is None:
         return None
@@ -134,7 +134,7 @@ def _found_again(selected: Selection | None, env: Environment) -> Selection | No
 
 
 def _stamps(files: tuple[str, ...]) -> _Stamps:
-    """Return modification time and size of each file; None if it is missing, as while it is being saved."""
+    """Return modification time [ns] and size of each file; None for a missing file, as while it is being saved."""
     stamps: _Stamps = {}
     for file in files:
         try:

@@ -49,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _execute(script: str, main: ModuleType, py2: bool) -> int:
-    """Run a script as the main module; if it raises, print its traceback and return 1."""
+    """Run a script as the main module and return the exit code; if it raises, print its traceback and return 1."""
     signals.leave_signals_to_python()
     with open(script, "rb") as file:
         source = file.read()

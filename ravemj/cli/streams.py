@@ -9,7 +9,7 @@ from typing import cast
 
 _PLAIN = {"…": "...", "─": "-", "│": "|", "├": "|", "└": "`", "╴": "-", "←": "<-", "²": "^2", "³": "^3", "±": "+-"}
 _CHOSEN = {"replace", "ignore", "xmlcharrefreplace", "namereplace"}
-"""Error handlers that never fail; they are not replaced if the user has set them."""
+"""Encoding error handlers that never fail; if the user has set one of them, it is kept."""
 
 
 def prepare_streams() -> None:

@@ -119,7 +119,7 @@ def sensor_summary(sensor: AttachedSensor) -> Summary:
 
 
 def _finite(value: object) -> object:
-    """Convert a value to JSON data: None for numbers that are not finite, lists for tuples."""
+    """Convert a value to JSON data: infinite numbers and NaN to None, tuples to lists."""
     if isinstance(value, dict):
         return {name: _finite(part) for name, part in cast("Summary", value).items()}
     if isinstance(value, list | tuple):

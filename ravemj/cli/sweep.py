@@ -68,11 +68,7 @@ def _job_options(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def _items(options: argparse.Namespace, before: Mapping[str, Any]) -> Items:
-    """Return the items; their number may be omitted if the sweep is continued.
-
-    Raises:
-        ArgumentError: they are not given.
-    """
+    """Return ``--items``, ``--count`` or, if a sweep is continued, its item count; raise if there is none of these."""
     given = options.items or options.count
     if given is None and before.get("items", "") is None:
         given = before["total"]
@@ -83,7 +79,7 @@ def _items(options: argparse.Namespace, before: Mapping[str, Any]) -> Items:
 
 @contextmanager
 def _executor(options: argparse.Namespace) -> Generator[int | Executor | None]:
-    """Yield the executor of ``--jobs`` and ``--executor``; a user's executor is shut down at the end."""
+    """Yield the user's executor and shut it down at the end; without one yield the number of jobs, None if it is 1."""
     if options.executor is None:
         yield options.jobs if options.jobs > 1 else None
         return
@@ -97,11 +93,7 @@ def _executor(options: argparse.Namespace) -> Generator[int | Executor | None]:
 
 
 def _function(name: str, option: str) -> Callable[..., Any]:
-    """Import the function ``MODULE:FUNCTION``; modules of the working folder have precedence.
-
-    Raises:
-        ArgumentError: it does not exist.
-    """
+    """Import the function ``MODULE:FUNCTION``, in the working folder first; raise if there is none."""
     module, colon, attribute = name.partition(":")
     if not (module and colon and attribute):
         names = f"{', '.join(JOBS)} or MODULE:FUNCTION" if option == "WHAT" else "MODULE:FUNCTION"

@@ -32,7 +32,7 @@ _TIMESTEP = 0.01
 """Time step of physics [s]."""
 
 _ASPECT = 4 / 3
-"""Aspect ratio of a view (width by height)."""
+"""Aspect ratio (width / height) of the view for which the camera is placed."""
 
 
 def view(options: argparse.Namespace) -> int:
@@ -81,7 +81,7 @@ def _open_window(env: Environment, robot: Robot | None, options: argparse.Namesp
 
 
 def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
-    """Set the model's name as title; if the file has no camera, view the robot or everything from a corner."""
+    """Set title, selection and look; if the file has no camera, show the robot or everything obliquely."""
     viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
     if robot is not None or env.renderer.file_camera() is None:
         center, radius = shown_sphere(env, robot)
@@ -103,7 +103,7 @@ def _serve(
     worker: Worker,
     period: float,
 ) -> None:
-    """Serve the page, print its address, and wait for Ctrl-C."""
+    """Serve the web viewer, print its address, and wait for Ctrl-C."""
     from ravemj.gui.viewers.web.server import is_local  # noqa: PLC0415 - websockets is slow to import
 
     viewer = env.serve_viewer(options.host, options.port, options.token, options.embed)
@@ -122,7 +122,7 @@ def _serve(
 
 
 def _run_until_closed(viewer: "WindowViewer | WebViewer", work: Callable[[], None], period: float) -> None:
-    """Call a function periodically until a viewer is closed."""
+    """Call ``work`` every ``period`` seconds until the viewer is closed."""
     while viewer.is_open:
         time.sleep(period)
         with signals_delayed():

@@ -18,7 +18,7 @@ from ravemj.rave.whole_body import WholeBodyIK, WholeBodyResult
 _SIZES = (3, 7)
 _MOST_STEPS = 1000
 _BALANCE = 1e-5
-"""Weight of the centre-of-mass task: too small to affect the tolerance of a goal."""
+"""Weight of the centre-of-mass task, too small to affect whether goals are within tolerance."""
 _BASE_ROW = "base x,y,z,qw,qx,qy,qz"
 
 
@@ -40,11 +40,7 @@ def reach(options: argparse.Namespace) -> int:
 
 
 def _solved(robot: Robot, options: argparse.Namespace) -> WholeBodyResult:
-    """Solve and move the robot. If limbs are kept, the base is free, and the centre of mass keeps its x and y.
-
-    Raises:
-        ArgumentError: a limb does not exist, or a goal is invalid.
-    """
+    """Solve and move the robot. With kept contacts, the base is free, and the centre of mass keeps its x and y."""
     kept = [name for names in options.keep for name in names]
     ik = WholeBodyIK(robot, base=bool(kept))
     for name in kept:

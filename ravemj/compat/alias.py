@@ -79,7 +79,7 @@ def remove_package() -> Path | None:
 
 
 def _foreign_package() -> str | None:
-    """Return the path of an openravepy that is not ravemj's, or None."""
+    """Return the path of another ``openravepy`` that would be imported, or None."""
     finders = [finder for finder in sys.meta_path if not isinstance(finder, names.Renamed)]
     for finder in finders:
         spec = finder.find_spec(NAME, None)

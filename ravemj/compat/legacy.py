@@ -19,7 +19,7 @@ raveGetDebugLevel=RaveGetDebugLevel raveLog=RaveLog raveLogDebug=RaveLogDebug ra
 raveLogFatal=RaveLogFatal raveLogInfo=RaveLogInfo raveLogVerbose=RaveLogVerbose raveLogWarn=RaveLogWarn
 raveSetDebugLevel=RaveSetDebugLevel
 """
-"""Older names, and their names in ravemj."""
+"""Older OpenRAVE names, each with ``=`` and its name in ravemj."""
 
 
 class VoidPointer:

@@ -13,7 +13,7 @@ from ravemj.core.transforms import Floats, Ints
 from ravemj.errors import ArgumentError
 
 _CHUNK = 4_000_000
-"""Maximum number of distances computed at once."""
+"""Maximum number of distances that are computed at once, to limit memory."""
 
 _NONE = -1
 """Index that means no point."""

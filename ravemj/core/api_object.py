@@ -68,5 +68,5 @@ def _listed(kind: type, names: Iterable[str]) -> list[str]:
 
 
 def _all_of(kind: type, attribute: str) -> set[str]:
-    """Return the names in an attribute of a class and of its bases."""
+    """Return the union of an attribute's names over a class and its bases."""
     return {name for base in kind.__mro__ for name in vars(base).get(attribute, ())}

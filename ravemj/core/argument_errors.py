@@ -66,7 +66,7 @@ _KINDS: Mapping[str, tuple[str, Callable[[object], bool]]] = MappingProxyType(
         **dict.fromkeys(("bool", "Any", "object", "_empty"), ("anything", _is_any(object))),
     }
 )
-"""Name in messages, and type check, of each type in annotations."""
+"""Description for messages, and type check, of each type name in annotations."""
 
 
 @cache  # so that a function with two names stays one
@@ -100,7 +100,7 @@ def _is_scalar_array(value: object) -> bool:
 
 
 def _plain(value: object) -> object:
-    """Return the number of an array without dimensions; other values as they are."""
+    """Return the number in a zero-dimensional array; return other values unchanged."""
     return cast("np.ndarray[Any, Any]", value).item() if _is_scalar_array(value) else value
 
 
@@ -126,7 +126,7 @@ def _takes(method: FunctionType) -> bool:
 def _clearer(
     error: Exception, function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]
 ) -> Exception | None:
-    """Return an error that names the wrong argument; None if there is none, or if the error names it."""
+    """Return an error that names the wrong argument; None if none is wrong, or if ``error`` already names it."""
     if isinstance(error, ArgumentError):
         known = {_caller(function, args), *signature(function).parameters} - {"self", "cls"}
         wrong = None if _is_in(known, error) else _wrong_type(function, args, kwargs)
@@ -136,7 +136,7 @@ def _clearer(
 
 
 def _wrong_type(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[str, str] | None:
-    """Return the names of the function and of its first argument of a wrong type, and its description; else None."""
+    """Return names of function and argument, and a description, for the first argument of a wrong type, else None."""
     try:
         given = signature(function).bind(*args, **kwargs)
     except TypeError:  # its message names the argument that is missing or unknown
@@ -158,7 +158,7 @@ def _wrong_type(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str,
 
 
 def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Exception | None:
-    """Return an error of Python extended by the given arguments; None if it names one, or comes from user code."""
+    """Return a copy of an error with the arguments' values; None if it names an argument or comes from user code."""
     files = [frame.f_code.co_filename for frame, _ in walk_tb(error.__traceback__)]
     if isinstance(error, RavemjError) or not all(file.startswith(_OURS) or file.endswith(".pyx") for file in files):
         return None
@@ -180,7 +180,7 @@ def _is_in(names: Iterable[str], error: Exception) -> bool:
 
 
 def _caller(function: FunctionType, args: tuple[Any, ...]) -> str:
-    """Return the name of a function, or of the class whose constructor it is."""
+    """Return the function's name for messages; for a constructor the class's."""
     return type(args[0]).__name__ if function.__name__ == "__init__" else function.__name__
 
 

@@ -226,12 +226,12 @@ def checked_transforms(transforms: Sequence[ArrayLike], name: str) -> Floats:
 
 
 def _is_exact(rows: Sequence[Vec3], name: str) -> bool:
-    """Return whether a rotation matrix, which may be scaled, is orthonormal up to rounding.
+    """Return True if a rotation matrix is orthonormal up to rounding, False if it is scaled or slightly off.
 
     It uses Python floats, which are several times faster than numpy for nine numbers.
 
     Raises:
-        ArgumentError: it is not orthonormal even after removing the scale.
+        ArgumentError: The matrix is not orthonormal even after removing a scale factor.
     """
     x, y, z = rows
     determinant = dot(x, cross(y, z))
@@ -247,6 +247,6 @@ def _is_exact(rows: Sequence[Vec3], name: str) -> bool:
 
 
 def _off_orthonormal(x: Vec3, y: Vec3, z: Vec3) -> float:
-    """Return the largest entry of ``R R^T - I`` for the rows of R."""
+    """Return the largest absolute entry of R R^T - I, for the matrix R with these rows."""
     squares = max(abs(dot(x, x) - 1), abs(dot(y, y) - 1), abs(dot(z, z) - 1))
     return max(squares, abs(dot(x, y)), abs(dot(y, z)), abs(dot(z, x)))

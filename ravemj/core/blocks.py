@@ -18,7 +18,7 @@ _T = TypeVar("_T")
 
 
 class _CodeInC(io.IOBase):
-    """Base class whose ``__exit__``, that of ``io.IOBase``, is C code that calls ``close()`` for any arguments."""
+    """Base class that inherits ``__exit__`` from ``io.IOBase``: C code that calls ``close()`` for any arguments."""
 
     closed = True  # pyright: ignore - garbage collection should not call ``close``
 
@@ -52,7 +52,7 @@ def block(function: Callable[_P, Generator[_T]]) -> Callable[_P, AbstractContext
 
 
 class _Exit(Generic[_T]):
-    """An ``__exit__`` that is looked up when the block begins."""
+    """Descriptor for ``__exit__`` whose function is looked up when the block begins."""
 
     def __init__(self, find: Callable[[_T], Callable[..., object]]) -> None:
         self._find = find

@@ -6,11 +6,10 @@ from typing import Any
 
 
 class _Listed(EnumMeta):
-    """Metaclass with the dictionaries of Boost.Python's enumerations, which old scripts use."""
+    """Metaclass with the dictionaries ``names`` and ``values`` of Boost.Python enumerations, which old scripts use."""
 
     @property
     def names(cls) -> dict[str, Any]:
-        """The members by name."""
         return dict(cls.__members__)
 
     def __dir__(cls) -> list[str]:
@@ -19,7 +18,6 @@ class _Listed(EnumMeta):
 
     @property
     def values(cls) -> dict[int, Any]:
-        """The members by number."""
         return {int(member): member for member in cls.names.values()}
 
 
@@ -30,7 +28,7 @@ class NamedInt(IntEnum, metaclass=_Listed):
 
     @classmethod
     def _missing_(cls, value: object) -> Enum | None:
-        """Raise Python's error with the name of the argument."""
+        """Raise Python's error for an invalid value, with the argument's name."""
         wanted = "the number of a member" if isinstance(value, int) else "a whole number"
         raise ValueError(f"{cls.__name__}: value: is {value!r}, and should be {wanted}")
 
@@ -43,7 +41,7 @@ class NamedFlag(NamedInt):
 
     @classmethod
     def _missing_(cls, value: object) -> Enum | None:
-        """Return a flag that is not a member, such as a combination of two; its name lists its parts."""
+        """Return a flag for a value without a member, such as a combination of two; its name lists the members."""
         if not isinstance(value, int):
             return super()._missing_(value)
         parts = [member for member in cls if member and member & value == member]

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from ravemj.errors import ErrorCode, RavemjError
 
 _LONGEST_IMPORT = 1.0
-"""Maximum time that a fork waits for imports in other threads [s]."""
+"""Maximum time [s] that a fork waits until other threads finish their imports."""
 
 NEW_PROCESS = 'start processes with multiprocessing.get_context("spawn")'
 
@@ -29,7 +29,7 @@ def in_child(function: Callable[[], None]) -> Callable[[], None]:
 
 
 def _await_imports() -> None:
-    """Wait until no other thread is importing a module, since the child could never finish that import."""
+    """Wait until no other thread imports a module: a forked child could never finish that import."""
     locks: dict[str, Any] = vars(sys.modules["_frozen_importlib"]).get("_module_locks", {})
     harmless = {None, threading.get_ident()}
     deadline = time.monotonic() + _LONGEST_IMPORT
@@ -66,7 +66,7 @@ def disown(thing: object, but: tuple[str, ...] = ()) -> None:
 
 @cache
 def _inherited(kind: type, silent: tuple[str, ...]) -> type:
-    """Return a class of the same layout whose objects raise an error when they are used."""
+    """Return a class of the same memory layout whose instances, inherited from the parent, raise an error when used."""
 
     def refuse(thing: object, *arguments: object) -> NoReturn:
         del thing, arguments

@@ -118,7 +118,7 @@ class ShortestPaths:
             start = step
 
     def _step(self, start: int, end: int, distance: dict[int, int]) -> int:
-        """Return the next node on the path, given the distances of nodes from its end."""
+        """Return the next node on the shortest path from ``start``; ``distance`` is by node, from the path's end."""
         nearer = self._nearer(start, distance)
         while len(nearer) > 1:  # recursively, towards the largest inner node
             end = self._largest_inner(start, end, distance)
@@ -127,7 +127,7 @@ class ShortestPaths:
         return nearer[0]
 
     def _largest_inner(self, start: int, end: int, distance: dict[int, int]) -> int:
-        """Return the largest inner node of a shortest path, minimized over all shortest paths between two nodes."""
+        """Return the minimum over all shortest paths from ``start`` to ``end`` of the largest inner node."""
         layers = [{start}]
         while end not in layers[-1]:
             layers.append({near for node in layers[-1] for near in self._nearer(node, distance)})
@@ -139,11 +139,11 @@ class ShortestPaths:
         return largest[start]
 
     def _nearer(self, node: int, distance: dict[int, int]) -> list[int]:
-        """Return the neighbours of a node that are nearer to the origin of the distances."""
+        """Return the neighbours of a node that are nearer to the origin of ``distance``."""
         return [other for other in self._edge[node] if distance.get(other, len(self._edge)) < distance[node]]
 
     def _distances(self, origin: int, wanted: int) -> dict[int, int]:
-        """Return the distances of nodes from an origin, up to the distance of ``wanted`` (breadth-first search)."""
+        """Return distances by node from ``origin``, by breadth-first search until ``wanted`` is reached."""
         distance = {origin: 0}
         queue = deque([origin])
         while queue and wanted not in distance:

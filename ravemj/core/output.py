@@ -143,7 +143,7 @@ def output_error(path: AnyPath, error: Exception) -> OutputError:
 
 @contextmanager
 def _output_errors(path: AnyPath, kinds: tuple[type[Exception], ...] = (OSError, ValueError)) -> Generator[None]:
-    """Convert errors of some types to ``OutputError``; by default also the ``ValueError`` of paths with null bytes."""
+    """Convert errors in the block to ``OutputError``; by default also ``ValueError``, as for paths with null bytes."""
     try:
         yield
     except (OutputError, BrokenPipeError):  # a pipe is not the target
@@ -153,7 +153,7 @@ def _output_errors(path: AnyPath, kinds: tuple[type[Exception], ...] = (OSError,
 
 
 def _real(path: AnyPath) -> Path:
-    """Return the absolute path with symbolic links resolved, so that their targets are replaced."""
+    """Return the absolute path with symbolic links resolved, so that writing replaces their targets."""
     return Path(os.path.realpath(path))
 
 
@@ -198,7 +198,7 @@ def temporary_folder() -> Generator[str]:
 
 @cache
 def _realm() -> str:
-    """Return eight hexadecimal digits for the namespace of process ids: the machine, and the container on it."""
+    """Return eight hexadecimal digits that identify the namespace of process ids: the machine and its container."""
     import hashlib  # noqa: PLC0415 - slow to import
 
     try:

@@ -45,7 +45,6 @@ class _Worker:
             self.process = self.pool.submit(os.getpid)
 
     def kill(self) -> None:
-        """Kill the process immediately."""
         has_begun = self.process.done() and not self.process.cancelled()
         with contextlib.suppress(ProcessLookupError, BrokenProcessPool):
             if has_begun:

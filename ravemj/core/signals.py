@@ -126,7 +126,7 @@ def _end(number: int, frame: object) -> None:
 
 
 def _forget() -> None:
-    """Clear the parent's temporary files and blocks in a forked child."""
+    """Forget the parent's temporary files and signal blocks in a forked child."""
     _functions.clear()
     _delays.clear()
 

@@ -62,7 +62,7 @@ def read_file(
 
 
 def _read_model(path: str, wanted: str, given: Attributes, metre: float, access: FileAccess) -> Reading:
-    """Read XML, or COLLADA with any suffix, since ``Environment.Save`` accepts any."""
+    """Read an XML model; COLLADA is recognized with any suffix, since ``Environment.Save`` accepts any."""
     if not path.lower().endswith(collada.SUFFIXES):
         try:
             content = content_of(path)
@@ -159,7 +159,7 @@ def _read_collada(
 
 
 class _NameSuffixes:
-    """Names of a file's bodies, each with its next numeric suffix."""
+    """Names of a file's bodies, each with the next numeric suffix for a duplicate."""
 
     def __init__(self) -> None:
         self._next: dict[str, int] = {}

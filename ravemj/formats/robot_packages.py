@@ -87,7 +87,7 @@ def robot_file(name: str, *, download: bool = False, say: Callable[[str], None] 
 
 
 def _folder(package: str) -> Path | None:
-    """Return the folder of an installed package without importing it, or None."""
+    """Return the folder of an installed package without importing it; None if it is not installed."""
     spec = importlib.util.find_spec(package)
     places = None if spec is None else spec.submodule_search_locations
     return Path(next(iter(places))) if places else None
@@ -115,7 +115,7 @@ def _described(name: str) -> RobotFile | None:
 
 @cache
 def _repositories(folder: str) -> dict[str, dict[str, str]]:
-    """Return address, commit and cache folder of each repository."""
+    """Return address, commit and cache folder of each repository that ``robot_descriptions`` lists, by name."""
     repositories: dict[str, dict[str, str]] = {}
     for node in ast.walk(ast.parse(Path(folder, "_repositories.py").read_text(encoding="utf-8"))):
         if not isinstance(node, ast.Dict):
@@ -131,10 +131,10 @@ def _repositories(folder: str) -> dict[str, dict[str, str]]:
 
 
 class _Assignments(ast.NodeVisitor):
-    """Values assigned in a module: paths, and arguments of a xacro.
+    """Evaluator of the assignments in a module of ``robot_descriptions``.
 
     Attributes:
-        texts: Paths by the names of their variables.
+        texts: Paths by variable name.
         origin: Address of the repository.
         arguments: Arguments of a xacro.
     """
@@ -146,11 +146,9 @@ class _Assignments(ast.NodeVisitor):
         self._repositories = repositories
 
     def visit_AnnAssign(self, node: ast.AnnAssign) -> None:
-        """Store the value of an annotated assignment."""
         self._assign(node.target, node.value)
 
     def visit_Assign(self, node: ast.Assign) -> None:
-        """Store the value of an assignment."""
         self._assign(node.targets[0], node.value)
 
     def _assign(self, target: ast.expr, value: ast.expr | None) -> None:
@@ -165,7 +163,7 @@ class _Assignments(ast.NodeVisitor):
             self.texts[target.id] = text
 
     def _text(self, value: ast.expr) -> str | None:
-        """Evaluate an expression for a path; None if it is not supported."""
+        """Evaluate an expression for a path; return None if the expression is not supported."""
         if isinstance(value, ast.Constant):
             return str(value.value)
         if isinstance(value, ast.Name):
@@ -194,7 +192,7 @@ def _constant(node: ast.expr | None) -> object:
 
 
 def _registry() -> dict[str, dict[str, Any]]:
-    """Return the menagerie's records of the robots; empty if it is not installed."""
+    """Return the menagerie package's records of its robots, by name; empty if the package is not installed."""
     folder = _folder(_MENAGERIE)
     return {} if folder is None else _registry_in(str(folder))
 

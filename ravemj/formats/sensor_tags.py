@@ -152,6 +152,6 @@ def written(device: Device, *, collada: bool = False) -> list[tuple[str, str | f
 
 
 def _content(values: "list[Any]", tag: SensorTag) -> str | float | Sequence[float]:
-    """Return the content of an element, given the values of its fields."""
+    """Return the content of a sensor's element from its values [SI], converted to the tag's unit."""
     in_degrees = [settled.degrees(value) if tag.unit == _DEGREE else value for value in values]
     return in_degrees if len(in_degrees) > 1 else in_degrees[0]

@@ -74,7 +74,7 @@ def values(joint: Joint) -> list[float]:
 
 
 def _largest(parts: Sequence[float]) -> int:
-    """Return the index of the largest component; of components that are equal up to rounding, the first."""
+    """Return the index of the largest component in magnitude; of those equal up to rounding, the first."""
     largest = max(map(abs, parts))
     return next(index for index, part in enumerate(parts) if abs(part) >= largest - _TIE)
 
@@ -89,5 +89,5 @@ def _unit(parts: Sequence[float]) -> tuple[float, ...]:
 
 
 def _snapped(part: float) -> float:
-    """Return the exact sine of 45 degrees for numbers near it, since right angles are frequent in models."""
+    """Round a number near +-sin 45 deg to it exactly, since right angles are frequent in quaternions."""
     return math.copysign(_SQRT_HALF, part) if abs(abs(part) - _SQRT_HALF) < 1e-12 else part

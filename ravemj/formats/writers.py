@@ -62,7 +62,7 @@ def save(
 
 
 def _save_urdf(path: Path, scene: Scene, diagnostics: Diagnostics) -> None:
-    """Write a robot, its SRDF beside it, and its meshes into a folder."""
+    """Write a robot's URDF, its SRDF beside that, and its meshes into a folder."""
     document = urdf.write(scene, diagnostics)
     with new_file(path) as file:
         file.write_text(document.urdf, encoding="utf-8", newline="\n")
@@ -126,7 +126,7 @@ def external_bodies(
 def _external(
     path: AnyPath, body: KinBody, number: int, diagnostics: Diagnostics, scheme: str | None
 ) -> ExternalBody | None:
-    """Return a reference to a body in its file; None, with a warning, if reading it gives another body."""
+    """Return a reference to a body in the file ``path``; None, with a warning, if the file gives another body."""
     try:
         reference = find_external(body, number, os.fspath(path), scheme)
         for root in body.links[:1]:
@@ -145,11 +145,7 @@ def _external(
 
 
 def _referred(path: AnyPath, body: KinBody, reference: ExternalBody) -> KinBody:
-    """Return the body that reading a reference produces.
-
-    Raises:
-        SourceError: The reference cannot be read.
-    """
+    """Return the body that a reader obtains from a reference; raise if the reference cannot be read."""
     document = collada.write(Scene((body,)), Diagnostics(), {body.name: reference})
     bodies = read_text(document.encode(), os.fspath(path), FileAccess.opened(os.fspath(path))).bodies
     if not bodies:
@@ -172,7 +168,7 @@ def _save_openrave_xml(path: Path, scene: Scene, diagnostics: Diagnostics, meshe
 
 
 def _archive(name: str, content: bytes) -> bytes:
-    """Return a ``.zae`` archive of a document, with the manifest that names it."""
+    """Return a ``.zae`` archive of a document called ``name``, with a manifest."""
     manifest = f'<?xml version="1.0" encoding="utf-8"?>\n<dae_root>./{escape(quote(name))}</dae_root>\n'
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -48,11 +48,7 @@ _AXES = {DOFAffine.X: 0, DOFAffine.Y: 1, DOFAffine.Z: 2}
 
 @lru_cache(maxsize=64)  # planners set the pose of a base thousands of times
 def _parts(affinedofs: int) -> tuple[DOFAffine, ...]:
-    """Return the components in the order of their values.
-
-    Raises:
-        ArgumentError: there are two rotation types.
-    """
+    """Return the components in ``affinedofs``, in the order of their values; raise if two are rotation types."""
     parts = tuple(part for part in _SIZES if part & affinedofs)
     if sum(bool(part & DOFAffine.RotationMask) for part in parts) > 1:
         raise ArgumentError(f"affinedofs: {affinedofs} has more than one kind of rotation", ErrorCode.Assert)

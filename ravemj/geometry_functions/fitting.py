@@ -45,7 +45,7 @@ def _points(points: ArrayLike, dimensions: Sequence[int], least: int) -> Floats:
 
 
 def _fitted(points: Floats) -> tuple[Floats, float, float]:
-    """Solve x^2 = 2 c x + (r^2 - c^2) for the centre c and the radius r."""
+    """Fit a circle or sphere by x^2 = 2 c x + (r^2 - c^2); return centre c, radius r, and sum of squared residuals."""
     unknowns, squares = np.column_stack([2 * points, np.ones(len(points))]), (points**2).sum(axis=1)
     solution = np.linalg.pinv(unknowns) @ squares
     centre = solution[:-1]

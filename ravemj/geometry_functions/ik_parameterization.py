@@ -32,11 +32,11 @@ _ABOUT_AXIS = frozenset(kind for kind in _WITH_ANGLE if "Norm" in kind.name)
 _WITH_DIRECTION = {_Type.Direction3D, *_RAYS}
 """Types whose first three values are a direction."""
 _WITH_POINT = {*_PLACES, *_RAYS, *_WITH_ANGLE, _Type.TranslationLocalGlobal6D}
-"""Types whose last three values are a point that is transformed."""
+"""Types whose last three values are a point, which transforms move."""
 _ANGLE_WEIGHT = 0.4
-"""OpenRAVE's weight of a squared angle [1/rad^2] relative to a squared distance [1/m^2]."""
+"""OpenRAVE's weight of a squared angle [rad^2] relative to a squared distance [m^2] in distances between goals."""
 _UNIT = 0.01
-"""Tolerance of the squared length of a direction."""
+"""Tolerance of the squared length of a unit vector."""
 
 
 def goal_transform(value: ArrayLike, name: str) -> Floats:
@@ -244,7 +244,7 @@ def _wxyz(values: Floats) -> Wxyz:
 
 
 def _angle_about_z(pose: Pose) -> float:
-    """Return the component of a rotation about z [rad]."""
+    """Return the rotation angle about z of a pose (the twist of its rotation) [rad]."""
     return 2 * math.atan2(pose.wxyz[3], pose.wxyz[0])
 
 
@@ -253,7 +253,7 @@ def _wrapped(angle: float) -> float:
 
 
 def _nearest_point(ray: Floats) -> Floats:
-    """Return the point of a ray, given by direction and point, nearest to the origin."""
+    """Return the point of a line nearest to the origin; ``ray`` is direction and point."""
     direction, point = ray[:3], ray[3:]
     return point - direction * (direction @ point)
 
@@ -268,5 +268,5 @@ def _angle(a: Floats, b: Floats) -> float:
 
 
 def _half_turn(a: Floats, b: Floats) -> float:
-    """Return half the angle between two rotations [rad]; the first four values of each are a unit quaternion."""
+    """Return half the rotation angle between two poses [rad]; the first four values of each are a unit quaternion."""
     return _angle(a[:4], b[:4] if a[:4] @ b[:4] >= 0 else -b[:4])

@@ -223,7 +223,7 @@ def normalizeZRotation(qarray: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def _products(left: Floats, right: Floats) -> Floats:
-    """Return the products of quaternions in the last axis."""
+    """Return the products of quaternions, which are in the last axis."""
     w, v = left[..., :1], left[..., 1:]
     other_w, other_v = right[..., :1], right[..., 1:]
     scalar = w * other_w - (v * other_v).sum(axis=-1, keepdims=True)
@@ -231,7 +231,7 @@ def _products(left: Floats, right: Floats) -> Floats:
 
 
 def _rotated(quaternions: Floats, vectors: Floats) -> Floats:
-    """Return vectors in the last axis rotated by unit quaternions in the last axis."""
+    """Rotate vectors by unit quaternions; the last axis contains their components."""
     w, v = quaternions[..., :1], quaternions[..., 1:]
     twice = 2 * np.cross(v, vectors)
     return vectors + w * twice + np.cross(v, twice)

@@ -151,7 +151,7 @@ class PoseSet:
         return -displacement, rates
 
     def _displaced(self, D: Floats) -> tuple[Floats, Floats]:
-        """Return the coordinates of ``D`` nearest to the bounds, and by how much they exceed the bounds."""
+        """Return the coordinates of the relative pose ``D`` that exceed the bounds least, and by how much they do."""
         if self.lean is not None:
             return self._leaned(D, self.lean)
         best, least = None, math.inf
@@ -169,7 +169,7 @@ class PoseSet:
         return np.array([*lengths, *angles]), np.array([*far, *beyond])
 
     def _triples(self, rows: list[list[float]]) -> list[list[float]]:
-        """Return the equivalent roll, pitch and yaw angles of a rotation, each near the middle of its bounds."""
+        """Return the two (roll, pitch, yaw) of a rotation, or one at gimbal lock, near the middle of the bounds."""
         (r00, r01, _), (r10, r11, _), (r20, r21, r22) = rows
         cosine = math.hypot(r00, r10)
         pitch, rolls, pitches, yaws = math.atan2(-r20, cosine), *self._bounds[3:]
@@ -213,7 +213,7 @@ def _at_most_a_turn(lower: float, upper: float) -> tuple[float, float]:
 
 
 def _near(angle: float, lower: float, upper: float) -> float:
-    """Return an angle shifted by full turns nearest to the middle of its bounds."""
+    """Return the angle shifted by full turns to be nearest to the middle of the bounds."""
     return angle + _TURN * round(((lower + upper) / 2 - angle) / _TURN)
 
 
@@ -235,7 +235,7 @@ def _split(total: float, side: float, rolls: tuple[float, float], yaws: tuple[fl
 
 
 def _turned(angles: Floats) -> Floats:
-    """Return ``Rz(yaw) Ry(pitch) Rx(roll)``, shape (n, 3, 3)."""
+    """Return the rotations Rz(yaw) Ry(pitch) Rx(roll), shape (n, 3, 3), for rows (roll, pitch, yaw)."""
     (sr, sp, sy), (cr, cp, cy) = np.sin(angles).T, np.cos(angles).T
     rows = [
         [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
@@ -246,7 +246,7 @@ def _turned(angles: Floats) -> Floats:
 
 
 def _leaning(angles: Floats) -> Floats:
-    """Return the product of rotations by vectors (x, y, 0) and ``Rz(yaw)``, shape (n, 3, 3)."""
+    """Return the rotations exp([x, y, 0]) Rz(yaw), shape (n, 3, 3), for rows (x, y, yaw)."""
     x, y, yaw = angles.T
     angle = np.hypot(x, y)
     scale = np.where(angle > 0, angle, 1.0)
@@ -261,7 +261,7 @@ def _leaning(angles: Floats) -> Floats:
 
 
 def _angle_rates(pitch: float, yaw: float) -> Floats:
-    """Return the derivatives of roll, pitch and yaw by an angular velocity in axes of *w*, shape (3, 3)."""
+    """Return the Jacobian of (roll, pitch, yaw) by the angular velocity in the region's frame *w*, shape (3, 3)."""
     cosine, sine = math.cos(pitch), math.sin(pitch)
     cosine = math.copysign(max(abs(cosine), _LOCK), cosine)
     c, s = math.cos(yaw), math.sin(yaw)
@@ -269,7 +269,7 @@ def _angle_rates(pitch: float, yaw: float) -> Floats:
 
 
 def _lean_rates(D: Floats) -> Floats:
-    """Return the derivatives of the lean (first row) and of the yaw (last row) by an angular velocity, shape (3, 3)."""
+    """Return the Jacobian of lean (first row) and yaw (last row) by the angular velocity in frame *w*, shape (3, 3)."""
     x, y, z = D[:3, 2].tolist()
     level = math.hypot(x, y) or 1.0
     over = max(1 + z, _LOCK)

@@ -183,7 +183,7 @@ def quatRotateDirection(sourcedir: ArrayLike, targetdir: ArrayLike) -> Floats:
 
 
 def _orthogonal(direction: Floats) -> Floats:
-    """Return a vector orthogonal to a unit vector: the perpendicular component of x, or else of z."""
+    """Return the component of x orthogonal to a unit vector, or of z if x is parallel to it; not normalized."""
     for axis in (np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])):
         rest = axis - direction * direction[axis.argmax()]
         if rest @ rest >= 1e-8:

@@ -75,7 +75,7 @@ def ComputeGeodesicSphereMesh(radius: float = 1.0, level: int = 2) -> tuple[Floa
 
 
 def _faces(corners: Floats) -> list[tuple[int, int, int]]:
-    """Return the triangles of an icosahedron's adjacent vertices, counter-clockwise seen from outside."""
+    """Return an icosahedron's triangles as indices of its corners, counter-clockwise seen from outside."""
     near = corners @ corners.T > 0.4
     faces: list[tuple[int, int, int]] = []
     for a, b, c in itertools.combinations(range(len(corners)), 3):

@@ -175,7 +175,7 @@ def _write_video(frames: Iterator[Frame], temporary: Path, rate: Fraction, kind:
 
 
 def _write_mpg(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
-    """Write MPEG-2 at its most common frame rate, repeating frames, since it allows few rates."""
+    """Write an MPEG-2 video; it allows few frame rates, so frames are repeated at its most common rate."""
 
     def repeated() -> Iterator[Frame]:
         for number, frame in enumerate(frames):
@@ -198,7 +198,7 @@ def _write_webp(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> Non
 
 
 def _images(frames: Iterator[Frame], rate: Fraction, grain: int) -> "Iterator[Image]":
-    """Yield frames as images with their delays, multiples of ``grain`` [ms] that keep the total duration."""
+    """Yield frames as images with display times in multiples of ``grain`` [ms]; the total duration is kept."""
     from PIL import Image  # noqa: PLC0415 - slow to import
 
     pixels = 0
@@ -242,7 +242,7 @@ class _Stopped(Exception):  # noqa: N818 - no error of its own: it ends an encod
 
 
 def _arriving(handed_over: "Handover[Frame | None]", stopped: Flag) -> Iterator[Frame]:
-    """Yield the frames from the drawing thread until None arrives."""
+    """Yield the frames of the drawing thread until None arrives; raise ``_Stopped`` if that thread failed."""
     while (frame := handed_over.get()) is not None and not stopped.is_set():
         yield frame
     if stopped.is_set():
@@ -298,7 +298,7 @@ def _encode(encoder: _Encoder, frames: Iterator[Frame], temporary: Path, rate: F
 
 
 def _checked(frames: Iterable[Frame]) -> Iterator[Frame]:
-    """Yield copies of the frames; check that there is at least one and that all have the same size."""
+    """Yield copies of the frames; raise unless there is one, and all are uint8 and of the same shape (H, W, 3)."""
     shape: tuple[int, ...] = ()
     for number, frame in enumerate(frames):
         copy = np.array(frame, order="C")

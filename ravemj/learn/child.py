@@ -87,7 +87,7 @@ def check_file(exercise: Path, check: Check, seed: int) -> Verdict:
 
 
 def _copied(arguments: Arguments) -> Arguments:
-    """Return arguments with copied arrays, which a function may change."""
+    """Copy the arrays among arguments, since a student's function may change them."""
     return tuple(copy.copy(argument) if hasattr(argument, "dtype") else argument for argument in arguments)
 
 
@@ -137,7 +137,7 @@ def load_check(path: Path) -> Check:
 
 
 class _RefusalError(Exception):
-    """A file that cannot be checked: status and message of its verdict."""
+    """Raised for a file that cannot be checked; contains status and message of the verdict."""
 
 
 def student_function(path: Path, check: Check) -> Function:
@@ -163,7 +163,7 @@ def student_function(path: Path, check: Check) -> Function:
 
 
 def _defined(path: Path, text: str, function: str) -> dict[str, object]:
-    """Return the names that a student's file defines."""
+    """Execute a student's file and return its global names; refuse it if ``function`` still has a placeholder."""
     tree = ast.parse(text, str(path))
     if _has_hole(tree, function):
         message = f"{function} still has ... in it: put your code in its place"

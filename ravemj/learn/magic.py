@@ -69,7 +69,7 @@ def _check(exercise: Exercise, namespace: Mapping[str, object]) -> Verdict:
 
 
 def _picture(exercise: Exercise, verdict: Verdict) -> object:
-    """Return a picture of a wrong answer for notebooks; None if there is nothing to show."""
+    """Return a notebook picture of a wrong answer; None if the answer is not wrong or cannot be drawn."""
     from IPython.core.display import Image  # noqa: PLC0415 - only in IPython
 
     from ravemj.graphics.video import picture_bytes  # noqa: PLC0415
@@ -89,7 +89,7 @@ def _picture(exercise: Exercise, verdict: Verdict) -> object:
 
 
 def _sources(function: FunctionType, namespace: Mapping[str, object]) -> Iterator[str]:
-    """Yield the lines that define a function, and the modules, numbers and functions of the notebook that it uses."""
+    """Yield the source code of a function and of the notebook's modules, numbers and functions that it uses."""
     waiting, seen = [function], {function.__name__}
     parts: list[str] = []
     while waiting:
@@ -110,7 +110,7 @@ def _sources(function: FunctionType, namespace: Mapping[str, object]) -> Iterato
 
 
 def _names(function: FunctionType) -> Iterator[str]:
-    """Yield the global names that a function and its inner functions use."""
+    """Yield the global names and attributes that a function and its inner functions use."""
     codes = [function.__code__]
     while codes:
         code = codes.pop()
@@ -139,7 +139,7 @@ def notebook(lesson: Lesson) -> str:
 
 
 def _page_cells(page: str) -> Iterator[tuple[str, str]]:
-    """Yield a lesson's page as cells; a figure of a shipped model is replaced by the code that shows it."""
+    """Yield a lesson's page as notebook cells (type, text); a figure of a shipped model becomes code that shows it."""
     parts = re.split(r'<iframe src="[^"]*/move-(\w+)\.html".*?</iframe>\n\n`.*\n', page)
     for number, part in enumerate(parts):
         figure = f'import ravemj\n\nravemj.load(ravemj.model_path("{part}")).animation()'

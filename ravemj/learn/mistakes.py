@@ -43,7 +43,7 @@ _ANSWERS: dict[str, tuple[tuple[str, Transformation], ...]] = {
     ),
     "joint values": (("The result is in degrees; joint values are in radians.", np.rad2deg),),
 }
-"""For each kind of answer, mistakes by their sentences, and functions that apply them to the right answer."""
+"""Typical mistakes by kind of answer: message, and function that applies the mistake to the right answer."""
 
 _LENGTHS: tuple[tuple[str, Transformation], ...] = (
     ("It is in millimetres; lengths here are in metres.", lambda answer: answer * 1000),
@@ -88,7 +88,7 @@ def recognized(check: Check, asked: Sequence[Arguments], given: Sequence[object]
 def _candidates(
     check: Check, asked: Sequence[Arguments], right: Sequence[Floats], given: Sequence[Floats]
 ) -> Iterator[tuple[str, list[Floats] | None]]:
-    """Yield each mistake with its answers; None if the mistake is impossible."""
+    """Yield the message of each typical mistake, and the answers it would give; None if the mistake is impossible."""
     for sentence, function in check.mistakes.items():
         yield sentence, _answers(function, asked)
     for sentence, convert in _ANGLES if check.angles else ():
@@ -103,7 +103,7 @@ def _candidates(
 
 
 def _by_turns(right: Sequence[Floats], given: Sequence[Floats]) -> list[Floats] | None:
-    """Return the right answers, shifted by full turns to the given ones."""
+    """Return the right answers, shifted by full turns to be nearest to the given ones; None if shapes differ."""
     if any(answer.shape != other.shape for answer, other in zip(right, given, strict=True)):
         return None
     turn = 2 * np.pi
@@ -121,7 +121,7 @@ def _reordered(right: Sequence[Floats]) -> Iterator[tuple[str, list[Floats]]]:
 
 
 def _answers(function: Callable[..., object], asked: Sequence[Arguments]) -> list[Floats] | None:
-    """Return the results of a function; None if it fails."""
+    """Return the results of a function for all arguments; None if one call fails."""
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings(action="ignore"):
             return [np.asarray(function(*arguments), dtype=float) for arguments in asked]

@@ -94,7 +94,7 @@ def _camera(env: Environment, points: list[Floats], *, flat: bool) -> Floats:
 
 
 def _first_row(check: Check, answer: Floats) -> Floats:
-    """Return the first of several answers."""
+    """Return the first of several positions or configurations; return other answers unchanged."""
     return answer[0] if check.kind in {"position", "joint values"} and answer.ndim > 1 and len(answer) else answer
 
 
@@ -112,7 +112,7 @@ def save_picture(check: Check, verdict: Verdict, output: Path) -> None:
 
 
 def _add_robots(env: Environment, scene: Scene, check: Check, given: Floats, right: Floats) -> Floats:
-    """Add the robot of a scene, and a transparent copy for joint values; return the pose of the answer's frame."""
+    """Add a scene's robot and, for joint values, a copy at the right values; return the pose of the answer's frame."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)
         env.Load(model_path(scene.model) if scene.model in SHIPPED_MODELS else scene.model)
@@ -146,12 +146,12 @@ def _pose(check: Check, answer: Floats) -> Floats:
 
 
 def _in_space(point: Floats) -> Floats:
-    """Return a point of the plane or of space as a point of space."""
+    """Return a 3D point; a 2D one gets z = 0."""
     return np.pad(point, (0, 3 - len(point)))
 
 
 def _drawn(env: Environment, given: Floats, right: Floats, *, turned: bool) -> Iterator[GraphHandle | None]:
-    """Draw the frames of two poses, or two points, and an arrow between them."""
+    """Draw the given and the right pose (if ``turned``, with axes) and an arrow between them; yield the handles."""
     size = max(float(np.abs([given[:3, 3], right[:3, 3]]).max()), 0.2)
     for T, colour, width in ((np.eye(4), None, 1), (given, _YOURS, 4), (right, _RIGHT, 2)):
         origin = T[:3, 3]

@@ -90,7 +90,7 @@ class _Output:
         self._process.wait()
 
     def reason(self, file: Path, seconds: float) -> str:
-        """Return the reason why there is no verdict."""
+        """Return the reason why the process gave no verdict."""
         if "Timeout (" in self.errors:
             name = str(file).encode("ascii", "backslashreplace").decode()  # as faulthandler writes it
             last_place = re.search(rf'File "{re.escape(name)}", line (\d+)', self.errors)
@@ -115,7 +115,7 @@ class _Reader:
                 self._kept += part[: MOST_OUTPUT - len(self._kept)]
 
     def text(self) -> str:
-        """Return the beginning of the stream."""
+        """Return the beginning of the stream, marked as cut if it was longer."""
         self._thread.join(_GRACE)
         cut = "… (cut)" if len(self._kept) >= MOST_OUTPUT else ""
         return self._kept.decode(errors="replace") + cut
@@ -189,7 +189,7 @@ class Progress:
 def _side_by_side(
     work: Callable[[Exercise], tuple[Exercise, str, Verdict]], exercises: list[Exercise]
 ) -> Iterator[tuple[Exercise, str, Verdict]]:
-    """Yield the results of a function of exercises in the order of completion; an interrupt cancels pending calls."""
+    """Call ``work`` for all exercises in parallel; yield the results as they come. An interrupt cancels the rest."""
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
         waiting = {pool.submit(work, exercise) for exercise in exercises}

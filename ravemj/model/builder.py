@@ -214,8 +214,8 @@ class BodyBuilder:
     def _frozen_manipulators(self, body: scene.KinBody, diagnostics: Diagnostics) -> tuple[scene.Manipulator, ...]:
         """Return the manipulators with links, joints and DOFs resolved.
 
-        If a joint of one does not move its effector, this manipulator has no gripper, and the later ones have neither
-        links nor gripper, as in OpenRAVE.
+        If a gripper joint does not move the effector, that manipulator has no gripper, and all later manipulators have
+        neither links nor gripper, as in OpenRAVE.
         """
         frozen: list[scene.Manipulator] = []
         names: set[str] = set()
@@ -237,7 +237,7 @@ class BodyBuilder:
         return (*frozen, *(freeze_manipulator(built, body, Diagnostics()) for built in unfinished))
 
     def _frozen(self, poses: Sequence[Pose], joints: Sequence[scene.Joint], active: int) -> scene.KinBody:
-        """Return the body with given link poses, without manipulators."""
+        """Return the immutable body with these link poses and without manipulators; ``active`` counts active joints."""
         return scene.KinBody(
             name=self.name,
             is_robot=self.is_robot,
@@ -267,7 +267,7 @@ class BodyBuilder:
         return sensor if name is None or self.refusal is not None else replace(sensor, link=self.find_link(name))
 
     def _in_order(self) -> list[JointBuilder]:
-        """Return the active joints, then the disabled ones, then the mimic joints."""
+        """Return the joints in the order: active, disabled, mimic joints."""
         active = [joint for joint in self.joints if joint.active]
         disabled = [joint for joint in self.joints if not joint.enabled]
         return active + disabled + [joint for joint in self.joints if joint.enabled and not joint.active]
@@ -284,7 +284,7 @@ class BodyBuilder:
     def _settled(
         self, joints: Sequence[scene.Joint], poses: Sequence[Pose], diagnostics: Diagnostics
     ) -> list[scene.Joint]:
-        """Return the joints with their values, measured or from the file, clamped to the limits."""
+        """Return the joints with their initial values, from the link poses or the file, clamped to the limits."""
         values = [list(measured_values(joint, poses[joint.parent].inverse() @ poses[joint.child])) for joint in joints]
         findings = diagnostics if self.joint_values is None else Diagnostics()
         values = _limited(joints, values, findings)
@@ -305,7 +305,7 @@ class BodyBuilder:
     def _asked(
         self, active: Sequence[scene.Joint], values: list[list[float]], diagnostics: Diagnostics
     ) -> list[list[float]]:
-        """Replace measured values by the values in ``<jointvalues>``."""
+        """Replace the active joints' values by those of the file's ``<jointvalues>``, if it has any."""
         if self.joint_values is None:
             return values
         dof = sum(len(joint.axes) for joint in active)
@@ -330,7 +330,7 @@ class BodyParts(NamedTuple):
 
 
 def _directed(joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, places_child: bool) -> scene.Joint:
-    """Return the joint with parent and child determined; swapping reverses its axes."""
+    """Return the joint with parent and child assigned; ``swap`` exchanges them and reverses the axes."""
     parent, child = joint.links
     T_parent_child, anchor, axes = joint.T_first_second, joint.anchor, joint.axes
     if swap:
@@ -356,7 +356,7 @@ def _directed(joint: JointBuilder, mimic: scene.Mimic | None, *, swap: bool, pla
 
 
 def _welded(joint: scene.Joint, built: JointBuilder, diagnostics: Diagnostics) -> scene.Joint:
-    """Return a weld as OpenRAVE reports it: at value 0, with the frame of its child, and limits of 0."""
+    """Return a weld as OpenRAVE reports it: value and limits 0, axes in the child's orientation."""
     T_parent_child = displaced_pose(joint, [0.0] * len(joint.axes))
     if any(axis.lower for axis in joint.axes):
         message = "a joint between whose limits there is nothing does not move; OpenRAVE moves the limits to 0"
@@ -369,7 +369,6 @@ def _welded(joint: scene.Joint, built: JointBuilder, diagnostics: Diagnostics) -
 
 
 def _at_values(joint: scene.Joint, values: Sequence[float]) -> scene.Joint:
-    """Return the joint with new values, one for each axis."""
     if [axis.value for axis in joint.axes] == values:  # unchanged in most files; copies are slow
         return joint
     return replace(
@@ -380,7 +379,7 @@ def _at_values(joint: scene.Joint, values: Sequence[float]) -> scene.Joint:
 def _limited(
     joints: Sequence[scene.Joint], values: Sequence[list[float]], diagnostics: Diagnostics
 ) -> list[list[float]]:
-    """Return the values clamped to the joints' limits, with a warning for each change."""
+    """Clamp values to the joints' limits, with a warning for each change; mimic joints keep theirs."""
     limited: list[list[float]] = []
     for joint, joint_values in zip(joints, values, strict=True):
         if joint.mimic is not None:  # its value will be computed

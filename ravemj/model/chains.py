@@ -51,7 +51,7 @@ class Connections:
 
     @cached_property
     def _placing(self) -> dict[int, int]:
-        """Index of the parent joint of each link that has one in the kinematic tree."""
+        """Joint index by link, for each link that is the child of a joint in the kinematic tree."""
         return {joint.child: index for index, joint in enumerate(self.joints) if joint.places_child}
 
     def between(self, link: int) -> set[int]:

@@ -69,7 +69,7 @@ class _Comparison:
     tolerance: float
 
     def scenes(self, first: Scene, second: Scene) -> Iterator[Difference]:
-        """Compare bodies, sensors outside robots, and gravity, view and description if both scenes have them."""
+        """Yield differences of bodies and sensors; of gravity, view and description if both scenes have them."""
         part = "the scene"
         yield from self._same(part, "bodies", _names(first.bodies), _names(second.bodies))
         yield from self._same(part, "sensors", _names(first.sensors), _names(second.sensors))
@@ -279,7 +279,7 @@ def poses_in(body: KinBody, dof_values: Sequence[float]) -> list[Pose]:
 
 
 def _random_value(axis: Axis, random: np.random.Generator) -> float:
-    """Return a random value within the limits, and within ``_FARTHEST`` of 0 if they allow it."""
+    """Return a random axis value within the limits and, if these allow it, within +-``_FARTHEST``."""
     low, high = (min(max(end, axis.lower), axis.upper) for end in (-_FARTHEST, _FARTHEST))
     return float(random.uniform(low, high))
 
@@ -299,7 +299,7 @@ def _kind(sensor: AttachedSensor) -> str | None:
 
 
 def _colours(geometry: Geometry) -> list[tuple[Rgb, float]]:
-    """Return colour and transparency of each visible surface."""
+    """Return colour and transparency of each display surface."""
     return [(surface.diffuse, surface.transparency) for surface in geometry.display or ()]
 
 
@@ -310,7 +310,7 @@ def _drawn(geometry: Geometry) -> Mesh:
 
 
 def _corners(mesh: Mesh) -> Floats:
-    """Return the vertices of each triangle with nonzero area in single precision, shape (n, 3, 3)."""
+    """Return the corners of each triangle, shape (n, 3, 3), without those that degenerate in single precision."""
     corners = mesh.vertices[mesh.triangles]
     a, b, c = (corners[:, i].astype(np.float32) for i in range(3))
     return corners[~((a == b).all(1) | (b == c).all(1) | (c == a).all(1))]

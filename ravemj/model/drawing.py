@@ -15,15 +15,15 @@ import numpy as np
 from ravemj.core.transforms import Floats, Ints
 
 _TIP_OF_ARROW = 0.1
-"""Length of an arrow's tip as a fraction of its length, as in OpenRAVE."""
+"""Length of an arrow's tip as a fraction of the arrow's length, as in OpenRAVE."""
 
 _SIDES_OF_ARROW = 12
 _SIDES_OF_CYLINDER = 32
 _SHADES = 16
-"""Number of pieces of a line per unit of colour difference of its ends."""
+"""Number of pieces into which a line is divided, per unit of colour difference between its ends."""
 
 _TEXTURE_CELLS = 64
-"""Maximum number of cells along a side of a plane; finer textures are averaged."""
+"""Maximum number of cells along a side of a textured plane; finer textures are averaged."""
 
 _BOX_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=np.float64)
 _BOX_FACES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
@@ -166,7 +166,7 @@ def _skin(rings: list[Floats], rgba: Floats) -> Primitives:
 
 
 def _quads(ring: Floats, other: Floats) -> Floats:
-    """Return the triangles between two closed rings of points (N, 3), without degenerate ones."""
+    """Return the triangles, shape (n, 3, 3), between two rings of points (N, 3), without degenerate ones."""
     following, other_following = np.roll(ring, -1, axis=0), np.roll(other, -1, axis=0)
     corners = np.concatenate(
         [np.stack([ring, other, other_following], axis=1), np.stack([ring, other_following, following], axis=1)]

@@ -59,12 +59,12 @@ def of_manipulator(body: KinBody, arm: Manipulator) -> str:
 
 
 def _gripper(body: KinBody, arm: Manipulator) -> tuple[object, ...]:
-    """Return the names of the gripper joints, and how they close; OpenRAVE hashes no other joint names."""
+    """Return names and closing directions of the gripper joints; OpenRAVE hashes no other joint names."""
     return [body.joints[index].name for index in arm.gripper_joints], arm.chucking_direction
 
 
 def _way(body: KinBody, arm: Manipulator) -> list[object]:
-    """Return the joints between an arm's base and effector, as hashed."""
+    """Return hashable records of the joints between an arm's base and effector."""
     if arm.base is None or arm.effector is None:
         return []
     joints = (*body.joints, *body.passive_joints)
@@ -76,7 +76,7 @@ def _tool(arm: Manipulator) -> tuple[object, ...]:
 
 
 def _links(body: KinBody) -> list[object]:
-    """Return the shapes of each link, and the pose of links that are not the child of a joint of the kinematic tree."""
+    """Return the shapes of each link; for roots of the kinematic tree also the pose relative to the first link."""
     placed = {joint.child for joint in body.all_joints if joint.places_child}
     entries: list[object] = []
     for index, link in enumerate(body.links):
@@ -112,7 +112,7 @@ def _digest(*parts: object) -> str:
 
 
 def _plain(part: object) -> object:
-    """Return a part with rounded numbers, and without fields that may differ between equal parts."""
+    """Convert a value for hashing: round numbers, and map equal poses or meshes to equal results."""
     if isinstance(part, float):
         return round(part, DIGITS) + 0.0  # no negative zero
     if isinstance(part, Mesh):

@@ -112,8 +112,8 @@ def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Se
 def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
     """Return the depth of each link: one more than the smallest known depth of its parents.
 
-    A parent is the previous link on a simple path from link 0. So a static link propagates its depth only away from
-    link 0.
+    A parent is the previous link on a simple path from link 0. Therefore a static link, whose depth is 0, determines
+    depths only on its far side from link 0.
     """
     neighbours: list[list[int]] = [[] for _ in static_links]
     for edge in edges:

@@ -44,7 +44,7 @@ class Inertias:
 
 
 _ROUNDING = 1e-12
-"""Relative size below which entries of a tensor are 0, as after rotations of its axes by quarter turns."""
+"""Relative size below which tensor entries count as 0, since rotations by quarter turns cause such rounding errors."""
 
 
 def principal_frame(inertial: Inertial) -> Pose:

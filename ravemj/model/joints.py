@@ -85,7 +85,7 @@ def displaced_pose(joint: Joint, values: Sequence[float]) -> Pose:
 
 
 def _motion(joint: Joint, index: int, value: float) -> Pose:
-    """Return the displacement caused by one axis of a joint."""
+    """Return the displacement, in the parent's frame, that the value of one joint axis causes."""
     axis = joint.axes[index]
     way = value - axis.reference
     if joint.slides(index):

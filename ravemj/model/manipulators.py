@@ -105,9 +105,9 @@ def _arm_dofs(body: scene.KinBody, base: int, effector: int) -> tuple[int, ...]:
 def _gripper(
     built: ManipulatorBuilder, body: scene.KinBody, arm: tuple[int, ...], diagnostics: Diagnostics
 ) -> dict[int, list[float]]:
-    """Return the gripper joints, each with the closing signs of its DOFs.
+    """Return the closing signs of the DOFs of each gripper joint, by joint index.
 
-    The signs are assigned to the names in order; joints of the arm get none.
+    The signs are assigned in the order of the joint names; joints of the arm are omitted with a warning.
     """
     directions_by_dof: dict[int, list[float]] = {}
     signs = iter([math.copysign(1.0, value) if value else 0.0 for value in built.closing_direction])

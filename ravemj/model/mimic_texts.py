@@ -23,7 +23,7 @@ def mimic_texts(body: KinBody) -> list[dict[str, str]]:
 
 
 def _partials(text: str) -> dict[str, str]:
-    """Return the partial derivatives in a text by variable; if it is invalid, the text itself."""
+    """Return the partial derivatives in a text by variable; of an invalid text, the text under the key ""."""
     try:
         return partials(text)
     except ExpressionError:
@@ -31,7 +31,7 @@ def _partials(text: str) -> dict[str, str]:
 
 
 def _respelled(equation: str, names: Mapping[str, str]) -> str:
-    """Return an equation in canonical spelling; if it is invalid, the text itself."""
+    """Return an equation in canonical spelling; return an invalid one unchanged."""
     try:
         return str(parse(substitute(equation, names), set(names.values())))
     except ExpressionError:

@@ -14,7 +14,7 @@ from ravemj.model.mimic import evaluation_order, leaders
 from ravemj.model.scene import Joint, KinBody
 
 _SAMPLES = 1000
-"""Number of leader values at which the derivative of a mimic equation is sampled."""
+"""Number of leader values at which the slope of a mimic equation is sampled."""
 
 
 def motion_bounds(body: KinBody) -> Floats:
@@ -41,7 +41,7 @@ def reach(body: KinBody) -> float:
 
 
 def _joint_reach(body: KinBody, joint: Joint) -> Floats:
-    """Return for each axis of a joint the maximum distance of moved shapes from the axis; 1 for prismatic axes."""
+    """Return for each axis of a joint the largest distance to shapes that it moves [m]; 1 for prismatic axes."""
     if joint.kind == "slider":
         return np.ones(1)
     if joint.static or not joint.places_child:
@@ -53,9 +53,9 @@ def _joint_reach(body: KinBody, joint: Joint) -> Floats:
 
 
 def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
-    """Return the maximum distance of the shapes of a link and its descendants from a point, perpendicular to an axis.
+    """Return the largest distance, perpendicular to an axis, from a point to the shapes of a link and its descendants.
 
-    Point and axis are fixed to the link and in its frame. The axis is a unit vector; zero means no axis.
+    Point and axis are fixed to the link and in its frame; the axis is a unit vector, or zero for plain distances.
     """
     across = np.eye(3) - np.outer(axis, axis)
     distances = [-math.inf]
@@ -79,7 +79,7 @@ def _farthest(body: KinBody, link: int, point: Floats, axis: Floats) -> float:
 
 
 def _stroke(joint: Joint) -> float:
-    """Return the maximum displacement of prismatic axes from ``T_parent_child``; 0 for a weld."""
+    """Return the largest displacement [m] of a joint's prismatic axes from their reference values; 0 for a weld."""
     if joint.static:
         return 0.0
     sliding = (axis for index, axis in enumerate(joint.axes) if joint.slides(index))
@@ -87,18 +87,18 @@ def _stroke(joint: Joint) -> float:
 
 
 def _point_in_child(joint: Joint, point: Floats) -> Floats:
-    """Return a point of a joint's parent frame in the child's frame, at the joint's reference."""
+    """Transform a point from a joint's parent frame to its child frame, at the joint's reference values."""
     T_child_parent = joint.T_parent_child.inverse().matrix()
     return T_child_parent[:3, :3] @ point + T_child_parent[:3, 3]
 
 
 def _direction_in_child(joint: Joint, direction: Floats) -> Floats:
-    """Return a direction of a joint's parent frame in the child's frame, at the joint's reference."""
+    """Transform a direction from a joint's parent frame to its child frame, at the joint's reference values."""
     return joint.T_parent_child.inverse().matrix()[:3, :3] @ direction
 
 
 def _rates(body: KinBody) -> list[Floats]:
-    """Return bounds on |d axis / d DOF| for each joint: arrays of shape (axes, dof)."""
+    """Return bounds on |d axis value / d DOF value| for each joint, as arrays of shape (axes, dof)."""
     joints, numbers, dof = body.all_joints, np.random.default_rng(0), 0
     rates = [np.zeros((len(joint.axes), len(body.dof_axes))) for joint in joints]
     samples: dict[str, Floats] = {}

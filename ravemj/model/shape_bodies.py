@@ -44,7 +44,7 @@ def box_geometries(boxes: Floats, *, visible: bool) -> list[Geometry]:
 
 
 def _rotation(axes: Sequence[float]) -> tuple[float, float, float, float]:
-    """Return the rotation whose columns are the given axes, nine numbers; the identity for no numbers."""
+    """Return the quaternion of the rotation with the given columns (nine numbers); the identity for no numbers."""
     return wxyz_from_rows([axes[row::3] for row in range(3)]) if axes else Pose().wxyz
 
 

@@ -106,7 +106,7 @@ class JointStates:
 
 
 def _trouble(names: object, values: object) -> str:
-    """Return the reason for skipping a message, or an empty text."""
+    """Return the reason to skip a message with these names and values; empty if it is valid."""
     if not isinstance(names, list) or not isinstance(values, list):
         return "it has no lists of names and values"
     texts, numbers = cast("list[object]", names), cast("list[object]", values)

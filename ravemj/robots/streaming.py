@@ -179,11 +179,7 @@ class Stream:
             raise RavemjError(f"stopped: {self._reason}")
 
     def _check_feedback(self, wanted: Floats, begin: float) -> None:
-        """Check the measured state.
-
-        Raises:
-            RavemjError: it is too old, or too far from the motion.
-        """
+        """Raise if the measured joint values are too old or too far from the motion."""
         guard, rows = self.guard, self.rows
         if guard.feedback is None:
             return
@@ -212,7 +208,7 @@ class Stream:
         self._last_sent = values
 
     def _hold(self, count: int) -> None:
-        """Send the latest values with zero velocity, once per period, until ``send`` fails."""
+        """Send the latest values ``count`` times with zero velocity, once per period; stop if ``send`` fails."""
         if self.latest is None:
             return
         begin, still = self.clock.now(), self.latest
@@ -224,7 +220,7 @@ class Stream:
                 return
 
     def _tell_rate(self) -> None:
-        """Warn if the rate was not kept."""
+        """Warn if values were sent at a lower rate than requested."""
         sent = np.array(self._sent)
         if len(sent) > 2:
             mean = float(np.diff(sent[:-1]).mean())
@@ -234,7 +230,7 @@ class Stream:
 
 
 class _SendError(Exception):
-    """An exception of the user's ``send`` function."""
+    """Wrapper of an exception in the user's ``send`` function."""
 
     def __init__(self, cause: Exception) -> None:
         super().__init__()
@@ -258,7 +254,7 @@ class _StopAll:
 
     @classmethod
     def install(cls) -> None:
-        """Install the handler; only possible in the main thread."""
+        """Install the handler; do nothing outside the main thread, where Python does not allow it."""
         previous = signal.getsignal(signal.SIGINT)
         if threading.current_thread() is threading.main_thread() and not isinstance(previous, cls):
             signal.signal(signal.SIGINT, cls(previous))

@@ -176,7 +176,7 @@ class Driver:
             note_failure(self._folder, failure)
 
     def _lost(self, task: ShardTask, error: Exception) -> list[ShardTask]:
-        """Return the shards to be computed again after the loss of one."""
+        """Handle a shard that raised or whose process died; return the shards to be computed again."""
         if not isinstance(self._executor, Workers):
             if isinstance(error, BrokenExecutor):
                 raise self._broken(error) from error

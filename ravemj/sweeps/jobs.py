@@ -28,7 +28,7 @@ _UNLIMITED = 1e3
 
 
 _ITERATIONS = 4000
-"""Maximum number of iterations of a planner."""
+"""Default maximum number of planner iterations."""
 
 
 class Job(NamedTuple):
@@ -118,7 +118,7 @@ def joint_values(work: Work, random: np.random.Generator, count: int) -> Floats:
 
 
 def _moved(work: Work) -> list[int]:
-    """Return the DOFs that a planner moves."""
+    """Return the DOFs that a planner moves: the arm's or, without an arm, all."""
     return list(range(work.mover.GetDOF())) if work.arm is None else work.arm.GetArmIndices().tolist()
 
 
@@ -134,7 +134,7 @@ def _tool_poses(work: Work, values: Floats) -> Floats:
 
 
 def _goals(work: Work, random: np.random.Generator, count: int) -> Floats:
-    """Draw goals that the arm can reach with the other joints at their present values."""
+    """Draw IK goals that the arm can reach while the other joints keep their values."""
     arm = work.tool.GetArmIndices()
     values = np.tile(work.mover.GetDOFValues(), (count, 1))
     values[:, arm] = joint_values(work, random, count)[:, arm]
@@ -180,7 +180,7 @@ def _ik(work: Work, items: Floats, random: np.random.Generator) -> Arrays:
 
 
 def _plan(work: Work, items: Floats, random: np.random.Generator) -> Arrays:
-    """Plan each motion with its own seed. The number of iterations is limited, since results of time limits vary."""
+    """Plan each motion with its own seed; iterations are limited instead of time, so that results are reproducible."""
     robot, env = work.mover, work.env
     robot.SetActiveDOFs(_moved(work))
     spec = robot.GetActiveConfigurationSpecification()

@@ -87,7 +87,7 @@ def _picture(  # noqa: PLR0913, PLR0917 - all that decides a picture
 
 
 def _numbers(env: Environment, geoms: NDArray[np.int32]) -> NDArray[np.uint16]:
-    """Return the index of the link at each pixel, counted from 1 in the order of bodies and links; 0 for none."""
+    """Return the number of the link at each pixel: from 1 in the order of bodies and links, 0 if no link is visible."""
     labels = env.simulation.collisions().labels(geoms)
     bodies = env.GetBodies()
     first = np.zeros(max(body.GetEnvironmentBodyIndex() for body in bodies) + 1, dtype=int)

@@ -131,7 +131,7 @@ def sweep(  # noqa: PLR0913 - keyword arguments
 
 
 class _SweepInputs(NamedTuple):
-    """All inputs of the results of a sweep, and its folder."""
+    """Everything that determines the results of a sweep."""
 
     first: ShardTask  # all items
     job: Job
@@ -180,7 +180,7 @@ def _choices(env: Environment) -> list[object]:
 
 
 def _environment(model: Model) -> tuple[Environment, Robot | None]:
-    """Return the environment of a model, and the robot if ``model`` is one."""
+    """Return the environment of a model, and the robot if the model is a ``Robot``; load the model if it is a path."""
     if isinstance(model, Robot):
         return model.GetEnv(), model
     if isinstance(model, Environment):
@@ -217,7 +217,7 @@ def _job(env: Environment, robot: Robot | None, what: object, manip: str | None,
 
 
 def _check_sendable(job: Job, executor: int | Executor | None) -> None:
-    """Check that processes can import a user's function."""
+    """Raise if worker processes cannot import a user's function."""
     if isinstance(job.what, str) or not isinstance(executor, int | ProcessPoolExecutor):
         return
     main = sys.modules["__main__"]
@@ -250,7 +250,7 @@ def _plan(env: Environment, job: Job, items: Items, seed: int, block: int | None
 
 
 def _items(items: Items) -> tuple[NDArray[Any] | None, int]:
-    """Return the items (None if they are to be drawn) and their number."""
+    """Return the items and their number; the items are None if a number is given and they will be drawn."""
     if isinstance(items, str | os.PathLike):
         items = _items_of_file(os.fspath(items))
     array = np.asarray(items)
@@ -275,7 +275,7 @@ def _items_of_file(path: str) -> NDArray[Any]:
 
 
 def _shard_size(plan: _SweepInputs, folder: Path, shard: int | None, workers: int) -> int:
-    """Return the number of items per shard: as given, as in the folder, or estimated from a first block."""
+    """Return the number of items per shard: as given, as in the folder's manifest, or by timing a first block."""
     task, is_function = plan.first, callable(plan.job.what)
     if shard is None:
         before = read_manifest(folder)
@@ -301,7 +301,7 @@ def _suggested(task: ShardTask, workers: int, least: int) -> int:
 
 
 def _is_done(path: Path, *, check: bool) -> bool:
-    """Return whether a shard is finished; with ``check``, remove a damaged file."""
+    """Return whether a shard's file exists; if ``check``, remove a damaged file and return False."""
     if not path.exists():
         return False
     if check and not is_sound(path):

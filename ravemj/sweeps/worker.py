@@ -105,7 +105,7 @@ def compute(task: ShardTask, start: int, stop: int) -> Arrays:
 
 
 def _block(task: ShardTask, work: Work, number: int, part: slice) -> Arrays:
-    """Compute the items of a block that belong to the shard."""
+    """Compute the items of block ``number`` that are in ``part``, the shard's slice of all items."""
     random = np.random.default_rng(np.random.SeedSequence(task.seed, spawn_key=(number,)))
     what, drawn = task.job.what, task.items is None
     with state_restored(work.env):
@@ -122,7 +122,7 @@ def _block(task: ShardTask, work: Work, number: int, part: slice) -> Arrays:
 
 
 def _checked(result: object, count: int) -> Arrays:
-    """Check the result of a user's function, and convert it to arrays."""
+    """Convert the result of a user's function to arrays; raise if they do not have ``count`` rows."""
     if not isinstance(result, Mapping):
         raise ArgumentError(f"the function returned {type(result).__name__}; expected a dict of arrays")
     named = cast("Mapping[object, NDArray[Any]]", result)

@@ -195,7 +195,7 @@ def _pose(T_world_robot: Floats | None) -> Floats:
 
 
 def _complete(model: GraspUse, row: Floats, answer: tuple[Floats, Floats, Floats, float]) -> None:
-    """Write the tool pose, finger values and quality of a successful grasp into its row."""
+    """Write the tool pose, finger values and quality of a successful grasp into its table row."""
     contacts, values, T_world_robot, mindist = answer
     robot, manip, target, columns = model.robot, model.manip, model.target, model.graspindices
     T_target_world = np.linalg.inv(target.GetTransform())
@@ -375,7 +375,7 @@ def _copy(model: GraspUse, alone: bool) -> Generator[Environment]:
 
 
 def _writable(parts: Path) -> Path:
-    """Return a folder that can be written: the given one, or a temporary one."""
+    """Return ``parts`` after creating it, or a temporary folder if it is not writable."""
     try:
         parts.mkdir(parents=True, exist_ok=True)
     except OSError as error:

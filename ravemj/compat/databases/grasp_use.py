@@ -200,7 +200,7 @@ class GraspUse(ApproachRays):
         return _closed(answer)
 
     def _place_hand(self, T_world_tool: Floats) -> None:
-        """Move the whole robot so that its tool is at a pose."""
+        """Move the whole robot so that its tool pose is ``T_world_tool``."""
         self.robot.SetTransform(T_world_tool @ np.linalg.inv(self.manip.GetTransform()) @ self.robot.GetTransform())
 
     def testGrasp(
@@ -293,7 +293,7 @@ def _closed(answer: GraspResult) -> Run:
 
 
 def _reach(robot: Robot, index: int) -> float:
-    """Return the largest distance [m] from a joint's axis to its child link and the next joints; 1 for a slider."""
+    """Return the largest distance [m] of child link and next joints from a joint's axis; 1 for prismatic joints."""
     joint = robot.GetJointFromDOFIndex(index)
     if joint.IsPrismatic(index - joint.GetDOFIndex()):
         return 1.0

@@ -114,7 +114,7 @@ class ValidGrasps(GraspUse):
     def _validated(
         self, grasp: Floats, index: int, checkcollision: bool, checkik: bool, checkgrasper: bool, backupdist: float
     ) -> ValidGrasp | None:
-        """Return a grasp if it can be reached; the robot is not restored."""
+        """Return a grasp if it passes the requested checks, else None; the robot is not restored."""
         self.robot.SetActiveManipulator(self.manip)
         self.setPreshape(grasp)
         T = self.getGlobalGraspTransform(grasp, collisionfree=True)
@@ -142,7 +142,7 @@ class ValidGrasps(GraspUse):
         return not self.manip.CheckEndEffectorCollision(T_world_tool)
 
     def _goal(self, T_world_tool: Floats) -> Floats | IkParameterization:
-        """Return the IK goal of the arm: the tool pose, or a ray if the arm's solver leaves the roll free."""
+        """Return the arm's IK goal: the tool pose, or a ray if the solver leaves the rotation about it free."""
         solver = self.manip.GetIkSolver()
         ray = IkParameterizationType.TranslationDirection5D
         if solver is None or not solver.Supports(ray):

@@ -179,7 +179,7 @@ class GraspingModel(ValidGrasps):
             return False
 
     def _fitting(self, path: str) -> StoredGrasps:
-        """Read a table, and check that it was generated for this hand."""
+        """Read a grasp table; raise if it was generated for another hand."""
         stored = read_grasps(path)
         owner, here = stored.owner, self._owner()
         need = {name: len(part) for name, part in self.graspindices.items() if name not in self._more}
@@ -204,7 +204,7 @@ class GraspingModel(ValidGrasps):
         return stored
 
     def _load_unfinished(self) -> bool:
-        """Load the grasps of an interrupted generation."""
+        """Load the grasps of an interrupted generation; return False if there are none."""
         folder = Path(self._unfinished_folder())
         if not folder.is_dir():
             return False
@@ -244,7 +244,7 @@ class GraspingModel(ValidGrasps):
         return StoredGrasps(self.grasps, self.graspindices, self._owner(), settings, self._tried, self._candidates)
 
     def _take(self, stored: StoredGrasps) -> bool:
-        """Set the grasps and columns of the model to those of a table."""
+        """Set the model's grasps, columns and settings to those of a table; return whether it has any grasps."""
         given = stored.settings
         self.grasps, self.graspindices = stored.rows, dict(stored.columns)
         self.totaldof = stored.rows.shape[1]
@@ -391,7 +391,7 @@ class GraspingModel(ValidGrasps):
         forget(parts)
 
     def _check_hand(self) -> None:
-        """Check that hand and target can be used."""
+        """Raise if the hand has no gripper joints, or the target cannot be grasped by this robot."""
         robot, manip, target = self.robot, self.manip, self.target
         if not manip.GetGripperDOF():
             raise ArgumentError(
@@ -408,7 +408,7 @@ class GraspingModel(ValidGrasps):
             raise ArgumentError(f"GraspingModel: '{robot.GetName()}' holds '{target.GetName()}'; release it first")
 
     def _opened(self) -> Floats:
-        """Return the values of the opened gripper joints."""
+        """Return the gripper joint values after opening the fingers; the robot is not changed."""
         with self.robot, self.target:
             self.robot.SetActiveManipulator(self.manip)
             self.target.Enable(False)
@@ -427,7 +427,7 @@ def _rows(values: ArrayLike, width: int, name: str) -> Floats:
 
 
 def _checking(model: GraspingModel, check: _Check) -> Callable[["Tried"], bool]:
-    """Return a function that closes the fingers as in a grasp, and calls the user's ``checkgraspfn``."""
+    """Return a function that closes the fingers as in a grasp, then returns the result of ``checkgraspfn``."""
     friction = model.grasper.friction if model.grasper else 0.0
 
     def checked(grasp: "Tried") -> bool:

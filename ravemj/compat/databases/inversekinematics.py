@@ -104,11 +104,11 @@ class InverseKinematicsModel(SolvedJoints):
         return self.setrobot(freeinc)
 
     def _solve(self, *, keep: bool) -> None:
-        """Derive the solver, or use the arm's existing one.
+        """Derive the solver; if ``keep``, use the arm's solver when it is of the same type.
 
         Raises:
-            InverseKinematicsError: the arm cannot be solved.
-            UnsupportedError: goals of that type are not supported.
+            InverseKinematicsError: The arm cannot be solved.
+            UnsupportedError: Goals of that type are not supported.
         """
         kind, start = self._type(), time.perf_counter()
         present = self.manip.GetIkSolver()

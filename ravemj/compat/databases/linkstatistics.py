@@ -67,7 +67,7 @@ class LinkStatisticsModel(DatabaseGenerator):
         self.robot.SetDOFResolutions(delta / self._distances())
 
     def _distances(self) -> Floats:
-        """Return the maximum displacement of a point per unit of each DOF, shape (dof,).
+        """Return for each DOF the maximum displacement of a point of the robot per unit of the DOF, shape (dof,).
 
         A DOF that moves nothing gets the smallest displacement of the other DOFs.
         """

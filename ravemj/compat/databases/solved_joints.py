@@ -17,7 +17,7 @@ from ravemj.rave.manipulator import Manipulator
 from ravemj.rave.robot import Robot
 
 _VERSION = 0x1000004C
-"""Version of OpenRAVE 0.149's solvers, used in file names."""
+"""Version number of OpenRAVE 0.149's IK solvers, used in file names."""
 
 
 class InverseKinematicsError(Exception):
@@ -76,7 +76,7 @@ class SolvedJoints(DatabaseGenerator):
             self._divide(self.freeindices)
 
     def _check_links(self) -> None:
-        """Check that joints can move all links of the arm."""
+        """Raise if a link of the arm is static, so that joints cannot move it."""
         body, base, effector = self.robot.simulation_state.scene, self.manip.GetBase(), self.manip.GetEndEffector()
         if base is None or effector is None:
             return
@@ -141,7 +141,7 @@ class SolvedJoints(DatabaseGenerator):
         return [arm[joint] for joint in range(chain.dof) if joint not in free], [arm[joint] for joint in free]
 
     def _divide(self, free: Sequence[int]) -> list[int]:
-        """Return the DOFs to solve for, given the free ones."""
+        """Return the arm's DOFs to solve for: all but ``free``, which must be distinct DOFs of the arm."""
         arm = self.manip.GetArmIndices().tolist()
         outside = [index for index in free if index not in arm]
         if outside:

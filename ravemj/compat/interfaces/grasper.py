@@ -25,7 +25,7 @@ from ravemj.rave.planning.planner import PlanningError
 from ravemj.rave.robot import Robot
 
 _TRIES = 10
-"""Number of simulations with noise for each candidate, as in OpenRAVE."""
+"""Number of noisy simulations of each candidate, as in OpenRAVE."""
 
 GraspResult = tuple[Floats, tuple[Floats, Floats] | None, float | None, float | None]
 Hull = tuple[Floats | None, list[list[int]] | None, Ints | None]

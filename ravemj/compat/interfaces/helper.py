@@ -73,7 +73,7 @@ class Helper(ApiObject):
     ) -> Trajectory | str:
         """Execute a motion unless ``execute`` is False; return it as trajectory or text if requested, else ``reply``.
 
-        The reply is that of OpenRAVE's module: an empty text, or "1" for motions to poses of the tool; never None.
+        The reply is that of OpenRAVE's module: an empty string, or "1" for motions to tool poses; never None.
         """
         if execute is None or execute:
             self._manipulation.execute(traj)

@@ -299,6 +299,6 @@ class TaskManipulation(Helper):
 
 
 def _first_columns(columns: Mapping[str, int | Sequence[int]]) -> dict[str, int]:
-    """Return the first column of each property that has columns."""
+    """Return the first column index of each property; properties without columns are omitted."""
     columns_by_name = {name: np.ravel(part) for name, part in columns.items()}
     return {name: int(part[0]) for name, part in columns_by_name.items() if part.size}

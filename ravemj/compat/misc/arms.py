@@ -64,7 +64,7 @@ class MultiManipIKSolver:
         return nearest
 
     def _alone(self, arm: Manipulator, goal: ArrayLike | IkParameterization, options: int) -> Floats:
-        """Return the solutions of one arm, ignoring the other arms."""
+        """Return the IK solutions of one arm, with the links of the other arms disabled in collision checks."""
         others = {link.GetIndex() for other in self.manips if other != arm for link in self._moved(other)}
         enabled = [link for link in self.robot.GetLinks(sorted(others)) if link.IsEnabled()]
         try:
@@ -83,7 +83,7 @@ class MultiManipIKSolver:
         ]
 
     def _together(self, rows: Sequence[Floats], options: int) -> bool:
-        """Return whether the arms are free of collisions at these joint values."""
+        """Set the joint values of all arms; return whether the robot is then free of collisions."""
         for arm, row in zip(self.manips, rows, strict=True):
             self.robot.SetDOFValues(row, arm.GetArmIndices(), CheckLimitsAction.Nothing)
         if not options & IkFilterOptions.IgnoreSelfCollisions and self.robot.CheckSelfCollision():

@@ -130,7 +130,7 @@ def DrawIkparam2(
 
 
 def _is_pose(target: object) -> bool:
-    """Distinguish the numbers of one pose from a list of targets."""
+    """Return whether ``target`` is a single pose (7, 3x4 or 4x4 numbers), not a list of targets."""
     try:
         return np.shape(np.array(target, dtype=np.float64)) in {(7,), (3, 4), (4, 4)}
     except (TypeError, ValueError):

@@ -11,7 +11,7 @@ from ravemj.rave.joint import Joint
 from ravemj.rave.kinbody import KinBody
 
 _PARALLEL = 1e-9
-"""Sine of the angle, or distance [m], below which axes are parallel or intersect."""
+"""Tolerance below which axes count as parallel (sine of their angle) or intersecting (distance [m])."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -158,13 +158,13 @@ def ComputeTrajectoryDerivatives(trajectory: Trajectory, maxderiv: int) -> None:
 
 
 def _rates(values: Floats, interpolation: str, integral: Floats | None, elapsed: Floats) -> Floats:
-    """Return the derivatives of values at the ends of the segments to the waypoints.
+    """Return the time derivatives of values at the waypoints, each at the end of the segment before it, shape (m, n).
 
     Args:
-        values: Shape (m, n).
-        interpolation: Their interpolation.
-        integral: Their integrals, which velocities of cubic curves depend on.
-        elapsed: Times between waypoints [s], shape (m,).
+        values: Values at the waypoints, shape (m, n).
+        interpolation: Interpolation of the values.
+        integral: Integrals of the values at the waypoints, used for quadratic interpolation, or None.
+        elapsed: Times since the previous waypoint [s], shape (m,).
     """
     rates = np.zeros_like(values)
     passed = np.flatnonzero(elapsed[1:] > 0) + 1

@@ -69,7 +69,7 @@ class ManipulatorIKGoalSampler(ApiObject):
         return solution if ikreturn else solution.GetSolution()
 
     def _solutions(self, goal: IkParameterization) -> list[IkReturn]:
-        """Return the solutions of a goal; if there are none, those of the first displaced goal with some."""
+        """Return the IK solutions of a goal; if it has none, of the first randomly displaced goal that has any."""
         solutions: Any = self._manip.FindIKSolutions(goal, *self._arguments, ikreturn=True)
         for _ in range(self._tries):
             if len(solutions):

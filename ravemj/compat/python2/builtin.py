@@ -57,7 +57,7 @@ def _zip(*sequences: Iterable[Any]) -> list[tuple[Any, ...]]:
 
 
 def _round(number: Any, ndigits: int = 0) -> float:
-    """Round halves away from zero."""
+    """Round halves away from zero, as Python 2 does."""
     exact = Decimal(float(item(number)))
     if not exact.is_finite():
         return float(exact)
@@ -65,7 +65,7 @@ def _round(number: Any, ndigits: int = 0) -> float:
 
 
 def _message(error: Any) -> Any:
-    """Return ``error.message`` of Python 2's exceptions."""
+    """Return the attribute ``message``; for exceptions without it, the value in Python 2."""
     if hasattr(error, "message") or not isinstance(error, BaseException):
         return error.message
     return error.args[0] if len(error.args) == 1 else ""
@@ -83,7 +83,7 @@ def _reload(module: ModuleType) -> ModuleType:
 
 
 def _code(source: Any, mode: Literal["exec", "eval"], path: str = "<string>") -> Any:
-    """Compile the argument of ``exec`` or ``eval``: text, an open file, or code."""
+    """Compile the argument of ``exec`` or ``eval``: text, bytes or an open file; return a code object unchanged."""
     source = source.read() if isinstance(source, File) else source
     source = importlib.util.decode_source(source) if isinstance(source, bytes) else source
     if not isinstance(source, str):
@@ -105,7 +105,7 @@ def _compile(source: Any, filename: str, mode: Any, *args: Any, **options: Any) 
 
 
 def _input(prompt: object = "") -> Any:
-    """Evaluate user input with the names of the caller."""
+    """Evaluate a line of user input in the caller's scope, as Python 2's ``input`` does."""
     frame = inspect.currentframe()
     assert frame is not None
     caller = frame.f_back

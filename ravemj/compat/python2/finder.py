@@ -23,7 +23,7 @@ _ENVIRONMENT = [
         os.path.dirname(os.path.dirname(__file__)),
     )
 ]
-"""Folders that are never translated: those of installed packages, and ravemj's."""
+"""Folders whose modules are never translated: those of installed packages and of ravemj."""
 
 
 def execute(source: bytes, path: str, names: dict[str, Any]) -> None:
@@ -62,7 +62,7 @@ def is_python2(path: str) -> bool:
 
 
 def _compile(source: bytes, path: str) -> CodeType | None:
-    """Compile a file as Python 3; None if that fails."""
+    """Compile a file as Python 3; return None if that fails."""
     try:
         return compile(source, path, "exec", dont_inherit=True)
     except (SyntaxError, ValueError):
@@ -85,7 +85,7 @@ def install_finder(folder: str) -> None:
 
 
 class _SourceFinder:
-    """Finder that uses Python's own finder, and translates Python 2 modules."""
+    """Import finder that locates modules as Python does, and has Python 2 modules translated."""
 
     def __init__(self, folder: str) -> None:
         self._folder = os.path.realpath(folder)
@@ -119,7 +119,7 @@ def _compiles(path: Path) -> bool:
 
 
 class _Loader(SourceFileLoader):
-    """Loader that translates a module; it writes no byte code, which Python 3 would use."""
+    """Loader that translates a module; it writes no byte code, since Python 3 would load that."""
 
     def exec_module(self, module: ModuleType) -> None:
         execute(self.get_data(self.path), self.path, vars(module))

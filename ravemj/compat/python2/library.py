@@ -38,7 +38,7 @@ RENAMED: dict[str, str] = dict(re.findall(r"(\S+)=(\S+)", _RENAMED))
 
 
 def _in(module: str, names: str) -> dict[str, object]:
-    """Map names to their new locations in a module; ``old=new`` gives a name that changed."""
+    """Map Python 2 names to their locations in ``module``; ``names`` contains ``old=new`` for a renamed name."""
     return {name: f"{module}.{now or name}" for name, now in re.findall(r"([^\s=]+)=?(\S*)", names)}
 
 
@@ -88,7 +88,7 @@ def _join(words: list[str], sep: str = " ") -> str:
 
 
 def _nothing(*_: object) -> None:
-    """Ignore a setting that Python 3 does not have."""
+    """Ignore a call to set something that Python 3 does not have."""
 
 
 _PATH: dict[str, object] = {"walk": _walk}

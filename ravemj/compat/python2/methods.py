@@ -44,7 +44,7 @@ _GONE: dict[str, Callable[..., Any]] = {
     "viewkeys": lambda values: values.keys(),
     "viewvalues": lambda values: values.values(),
 }
-"""Replacements of methods for objects that do not have them."""
+"""Functions that replace methods that Python 3 removed, by method name."""
 _LISTED = {"items", "keys", "values"}
 NAMES = {*_GONE, *_LISTED, "encode", "serialize", "sort"}
 """Names of methods that translated scripts call through ``call``."""

@@ -75,7 +75,7 @@ def import_(
 
 
 def _is_beside(name: str, importer: Mapping[str, Any]) -> bool:
-    """Return whether a non-relative import finds a module in the importer's own package."""
+    """Return whether Python 2 would find the module in the importer's package (implicit relative import)."""
     package = importer.get("__package__")
     if not package or importer.get("absolute_import") is __future__.absolute_import:
         return False
@@ -90,7 +90,7 @@ def _exists(name: str) -> bool:
 
 
 def _older(name: str, is_last: bool) -> ModuleType:
-    """Import a module by its Python 2 name; return it if ``is_last``, else the first module of its dotted name."""
+    """Import a module by its Python 2 name; return it if ``is_last``, else the top-level package of the name."""
     module = importlib.import_module(library.RENAMED[name]) if name in library.RENAMED else _empty(name)
     first, _, rest = name.partition(".")
     return view(module if is_last or not rest else importlib.import_module(first))

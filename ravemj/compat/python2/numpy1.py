@@ -36,13 +36,13 @@ unique_all unique_counts unique_inverse unique_values unstack vecdot vecmat
 """Names that only later versions export by ``from numpy import *``; they would hide those of Python and ``math``."""
 
 _OF_ARRAYS = ("repeat", "reshape", "resize", "tile")
-"""Functions whose second argument is a size."""
+"""Functions whose second argument is a size or shape."""
 
 _SIZED = ("empty", "eye", "identity", "ones", "zeros", *_OF_ARRAYS)
-"""Functions with a size as the first argument, and those of ``_OF_ARRAYS``."""
+"""Functions that take a size or shape: as first argument, or as second if in ``_OF_ARRAYS``."""
 
 _SIZES = {"M", "N", "n", "newshape", "repeats", "reps", "shape"}
-"""Names of arguments that are sizes."""
+"""Keyword arguments that are sizes or shapes."""
 
 _WHERE_NEEDED = None if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else False
 
@@ -85,7 +85,7 @@ def _find_common_type(array_types: Iterable[Any], scalar_types: Iterable[Any]) -
 
 
 def _as_floats(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a function to return floats for integers, too."""
+    """Wrap a function to return floats for integer and boolean arrays."""
 
     @functools.wraps(function)
     def call(x: Any, *args: Any, **options: Any) -> Any:
@@ -132,7 +132,7 @@ def _sum(a: Any, *args: Any, **options: Any) -> Any:
 
 
 def _names() -> dict[str, object]:
-    """Return the names that replace those of numpy, and ``__all__`` for ``from numpy import *``."""
+    """Return the NumPy 1 names that replace or extend numpy's, and ``__all__`` for ``from numpy import *``."""
     renamed: dict[str, str] = dict(re.findall(r"(\S+)=(\S+)", _RENAMED))
     names: dict[str, object] = {old: getattr(np, new) for old, new in renamed.items() if hasattr(np, new)}
     names |= {name: getattr(module, name) for module, text in _MOVED.items() for name in text.split()}

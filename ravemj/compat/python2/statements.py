@@ -24,7 +24,7 @@ class Statements(ast.NodeTransformer):
         self._globals: list[str] = []  # declarations of the innermost scope
 
     def _visit_scope(self, node: ast.Module | ast.FunctionDef | ast.ClassDef) -> None:
-        """Visit a scope; move global declarations before the first use, as Python 3 requires."""
+        """Visit a module, function or class; move its ``global`` statements to the start, as Python 3 requires."""
         outer, self._globals = self._globals, []
         self._scopes.append(node)
         self.generic_visit(node)

@@ -13,7 +13,7 @@ from ravemj.formats.meshes.collada.document import parse_tree, words
 from ravemj.formats.meshes.files import read_bytes
 
 _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
-"""Compression methods that OpenRAVE supports. For others, Python does not limit the unpacked size."""
+"""ZIP compression methods that OpenRAVE supports. With others, Python does not limit the unpacked size."""
 _ENTRY = b"PK\1\2"  # begins an entry of the directory
 _DAMAGES = (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, OSError, ValueError)
 """Undocumented exceptions of ``zipfile`` for damaged or encrypted archives."""

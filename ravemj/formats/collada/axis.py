@@ -9,7 +9,7 @@ from ravemj.formats.meshes.collada.document import Element, child, children, loc
 from ravemj.model.scene import UNLIMITED, Axis
 
 _RADIANS = {"OpenRAVE Collada Writer", "URDF Collada Writer"}
-"""Tools that write speeds and values of joints in radians, although the standard requires degrees."""
+"""Authoring tools that write joint speeds and values in radians, although COLLADA requires degrees."""
 
 _UNLIMITED_SLIDE = 1e6  # OpenRAVE's limit of sliders without limits
 _DEGREE = math.pi / 180
@@ -84,7 +84,7 @@ class AxisReader(NamedTuple):
         )
 
     def _limits(self) -> tuple[float, float, bool]:
-        """Return the limits, and whether the axis is circular."""
+        """Return the lower and upper limit of the axis [rad or m], and whether it is circular."""
         if self.library.truth(child(self.kinematics, "locked"), False):
             return 0.0, 0.0, False
         if self.is_revolute and self.library.truth(self._newparam("circular"), False):
@@ -98,7 +98,7 @@ class AxisReader(NamedTuple):
         return -_UNLIMITED_SLIDE, _UNLIMITED_SLIDE, False
 
     def _written_limits(self) -> tuple[float, float] | None:
-        """Return the limits as written [rad or m], in the kinematics system or else in the axis."""
+        """Return the limits [rad or m] of the kinematics system or else of the axis; None if neither has any."""
         unit = self._unit(_DEGREE)
         for owner in (self.kinematics, self.element):
             limits = child(owner, "limits")
@@ -124,7 +124,7 @@ class AxisReader(NamedTuple):
         return angle if self.is_revolute else self.library.metres(self.element)
 
     def _speed_unit(self) -> float:
-        """Return the conversion factor of speeds and values."""
+        """Return the factor from the file's speeds and joint values to rad or m; see `_RADIANS`."""
         contributors = children(child(self.library.document_of(self.element).root, "asset"), "contributor")
         tools = (" ".join(words(child(item, "authoring_tool"))) for item in contributors)
         return self._unit(1.0 if any(tool in _RADIANS for tool in tools) else _DEGREE)

@@ -86,7 +86,7 @@ class Bindings:
 
 
 def _is_through(binding: AxisBinding, instance: Element, holder: Element) -> bool:
-    """Return whether a binding may refer to the given instance of a model and to the given joint."""
+    """Return False if the binding's path goes through another model instance, or through another joint instance."""
     for item in binding.through:
         kind = local_name(item)
         if kind == "instance_kinematics_model" and item is not instance:
@@ -122,7 +122,7 @@ def read_bindings(library: Library, instance: Element, scene: Element, root: Nod
 
 
 def _owner(library: Library, name: str, *scopes: Element) -> Element | None:
-    """Return the instance in the kinematics scene whose parameter has a name."""
+    """Return the instance in the kinematics scene that contains the parameter ``name``; None if no scope has it."""
     item_ = next((item for scope in scopes if (item := library.resolve(name, scope)) is not None), None)
     around = None if item_ is None else item_.element
     while around is not None and local_name(around) not in _OWNERS:

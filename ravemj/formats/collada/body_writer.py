@@ -93,7 +93,7 @@ class BodyWriter:
                             out.append(partial)
 
     def _partials(self, joint: Joint, text: str) -> Iterator[tuple[str, XmlText]]:
-        """Yield the variable and the equation of each partial derivative that can be written."""
+        """Yield variable and equation of each partial derivative in ``text``; stop with a warning at an invalid one."""
         names, known = self._variables, set(self._variables.values())
         try:
             for name, equation in partials(text).items():
@@ -105,7 +105,7 @@ class BodyWriter:
             self._diagnostics.warn("not-written", message, joint.source)
 
     def _joint_path(self, variable: str) -> str:
-        """Return the path of a joint, given the name of its variable in mimic equations."""
+        """Return the COLLADA path of the joint that ``variable`` represents in mimic equations."""
         index = int(variable.removeprefix("joint"))
         return f"{self._model_of_joint[index]}/joint{index}"
 
@@ -121,7 +121,7 @@ class BodyWriter:
                     out.element("technique", profile=PROFILE)
 
     def _directions(self, joint: Joint) -> list[Vec3]:
-        """Return the directions of a joint's axes in its own frame; arbitrary for a weld at a hinge."""
+        """Return a joint's axis directions in its own frame; arbitrary for fixed hinges, where readers ignore them."""
         if self._is_bare(joint):
             return [_Z]
         # OpenRAVE turns the axes of a weld with its child, but for those of a slider.
@@ -131,17 +131,17 @@ class BodyWriter:
         return [direction if direction == ZERO else settled.direction(direction) for direction in directions]
 
     def _is_bare(self, joint: Joint) -> bool:
-        """Return whether OpenRAVE replaces a joint's axis by the z axis of its child."""
+        """Return whether the joint is a fixed hinge, whose axis OpenRAVE replaces by the child's z axis."""
         return joint.static and joint.kind == "hinge" and len(self._body.joints) > 0
 
     def _check_weld(self, joint: Joint) -> None:
-        """Warn of a weld whose axis differs from the axis that OpenRAVE assigns to it."""
+        """Warn if the axis of a fixed hinge is not the child's z axis, which OpenRAVE assigns to it."""
         if self._is_bare(joint) and not turns_about_z_of_child(joint):
             message = f"the axis of the weld '{joint.name}' is left out: in COLLADA it is the z axis of its child"
             self._diagnostics.warn("not-written", message, joint.source)
 
     def _write_link(self, tree: Tree, index: int, joint: int | None, depth: int) -> None:
-        """Write a link and its node, followed by its child joints and links."""
+        """Write a link and its scene node; recursively also the joints and links below it."""
         if depth > DEEPEST:
             raise OutputError(f"COLLADA readers take no body with more than {DEEPEST} links in a row")
         body, links, nodes = self._body, self._sections.kinematics_models, self._sections.nodes
@@ -174,7 +174,7 @@ class BodyWriter:
             self._write_loops(index)
 
     def _write_loops(self, link: int) -> None:
-        """Write the two ends of joints that close loops."""
+        """Write the attachments of ``link`` to joints that close kinematic loops."""
         out = self._sections.kinematics_models
         for index in self._loops.get(link, ()):
             joint, path = self._joints[index], self._joint_path(f"joint{index}")
@@ -193,14 +193,14 @@ class BodyWriter:
             out.element("technique", profile=PROFILE)
 
     def _joint_frames(self, index: int) -> tuple[Vec3, Pose]:
-        """Return a joint's origin in the parent link, and the pose of the child in the joint's frame at the value 0."""
+        """Return a joint's origin in the parent link, and the child's pose in the joint's frame at joint value 0."""
         joint, T_parent_child = self._joints[index], self._rest_pose(index)
         anchor = settled.position(joint.anchor if rests(self._body, index) else reported_anchor(joint))
         T_frame_child = Pose(add(T_parent_child.position, scale(anchor, -1.0)), T_parent_child.wxyz)
         return anchor, settled.pose(T_frame_child)
 
     def _rest_pose(self, index: int) -> Pose:
-        """Return the pose of a joint's child in its parent at the value 0 of the file."""
+        """Return the pose of a joint's child link in its parent link if the joint value in the file is 0."""
         joint = self._joints[index]
         if not self._body.joints:  # joints place nothing
             parent, child = (self._body.links[index].T_world_link for index in (joint.parent, joint.child))
@@ -210,7 +210,7 @@ class BodyWriter:
         return relative_pose(joint, [0.0] * len(joint.axes))
 
     def _write_physics(self, tree: Tree) -> None:
-        """Write a rigid body for each link; masses are given in the frame of the first link."""
+        """Write a rigid body for each link; mass frames are relative to the tree's root link."""
         models, scene = self._sections.physics_models, self._sections.physics_scene
         root = f"#node{self._number}.{tree.root}"
         with (

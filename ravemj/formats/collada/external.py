@@ -22,20 +22,20 @@ from ravemj.formats.meshes.collada.document import ColladaDocument, Element, chi
 from ravemj.model.scene import KinBody
 
 _MODEL_PARTS = {"instance_kinematics_model", "instance_joint"}
-"""Instances that a path must contain, since an element may belong to several of them."""
+"""Instances that the path of an axis must contain, since the same axis may occur in several of them."""
 _TOP = "external_node"
-"""Base name of the outermost nodes, followed by a number; inner nodes have other names, so that paths are unique."""
+"""Prefix of the numbered names of outermost nodes. Inner nodes have other names, so that paths are unique."""
 
 
 class _BoundAxis(NamedTuple):
-    """An axis that the file binds to a node.
+    """Joint axis that the file binds to a node.
 
     Attributes:
-        path: Its path in the articulated system.
-        target: The transform in the node.
+        path: Path of the axis in the articulated system.
+        target: Name of the node's transform.
         joint: Source of the joint.
         place: Index of the axis in the joint.
-        unit: Factor of written values [rad or m].
+        unit: Factor from values in the file to rad or m.
     """
 
     path: str
@@ -46,7 +46,7 @@ class _BoundAxis(NamedTuple):
 
 
 class _RigidBodies(NamedTuple):
-    """The instance of a physics model: its URL, its parent node, and pairs of rigid bodies and nodes."""
+    """Instance of a physics model: its URL, its parent node, and pairs (rigid body, node)."""
 
     url: str
     parent: str | None
@@ -109,7 +109,7 @@ def find_external(body: KinBody, number: int, target: str, scheme: str | None = 
 
 
 def _uri(path: str, target: str, scheme: str | None) -> str:
-    """Return a URI of a file, as seen from a document."""
+    """Return a URI that refers from the file ``target`` to ``path``; relative if not in a data folder of OpenRAVE."""
     name = name_in_data_folders(path) if scheme else ""
     file = find(name) if name else None
     if file is not None and os.path.samefile(file, path):  # an earlier folder may have another file of that name
@@ -120,8 +120,6 @@ def _uri(path: str, target: str, scheme: str | None) -> str:
 
 
 class _Finder:
-    """Finds the parts of a body in its file."""
-
     def __init__(self, library: Library, document: ColladaDocument, uri: str, suffix: str) -> None:
         self._library = library
         self._uri = uri
@@ -170,7 +168,7 @@ class _Finder:
         return name
 
     def _path(self, node: Node, tops: list[Node]) -> str:
-        """Return the path from an outermost node, named by its index, to a node."""
+        """Return the path of a node from its outermost node, which is named by its index in ``tops``."""
         around = [*node.around()][:-2]  # without the outermost one and the scene
         named = [(step.element.get("sid"), step.element.get("id")) for step in reversed(around)]
         names = [sid or f"{identity}{self._suffix}" for sid, identity in named if sid or identity]
@@ -219,7 +217,7 @@ class _Finder:
 
 
 def _top(node: Node) -> Node:
-    """Return the outermost ancestor of a node below the scene."""
+    """Return a node's outermost ancestor, a direct child of the scene."""
     return [*node.around()][-2]
 
 
@@ -250,7 +248,7 @@ def write_reference(sections: Sections, body: KinBody, number: int, external: Ex
 
 
 def _write_bindings(sections: Sections, body: KinBody, name: str, external: ExternalBody) -> None:
-    """Write the instance in the kinematics scene, and bind its models and axes to nodes and values."""
+    """Instantiate the body in the kinematics scene; bind its models to nodes and its axes to transforms and values."""
     scope, paths = f"{name}_scene", [path for path, _ in external.models] + [axis.path for axis in external.axes]
     out = sections.kinematics_scene
     with out.inside("instance_articulated_system", url=f"#{name}_motion", sid=scope, name=body.name):

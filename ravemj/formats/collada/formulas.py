@@ -36,7 +36,7 @@ class _FormulaError(Exception):
 
 
 _NameOf = Callable[[str], str | None]
-"""Function that returns the expression for a path or a parameter, or None."""
+"""Function that returns the expression of a joint path or function parameter, or None if it is unknown."""
 
 
 def read_formulas(library: Library, model: Element, joints: Mapping[Element, int], body: BodyBuilder) -> None:
@@ -57,7 +57,7 @@ class _FormulaReader:
     steps: Iterator[int] = field(default_factory=itertools.count)
 
     def read(self, formula: Element) -> None:
-        """Read a formula; a joint with an invalid formula keeps its value."""
+        """Read a formula as the mimic equations of its joint; disable the joint if the formula is invalid."""
         path = "".join(words(child(formula, "target", "param")))
         joint = self._joint(path)
         if joint is None:
@@ -76,7 +76,7 @@ class _FormulaReader:
         joint.equations = Equations(position, first, second)
 
     def _partials(self, formula: Element, kind: str) -> str:
-        """Return the partial derivatives by joint, in OpenRAVE's format."""
+        """Return the partial derivatives of type ``kind`` as OpenRAVE's ``|joint expression`` terms."""
         text = ""
         for item in _own_equations(formula, kind):
             joint = self._joint(item.get("target") or "")
@@ -88,7 +88,7 @@ class _FormulaReader:
         return text
 
     def _variable(self, path: str) -> str | None:
-        """Return the expression for the value of a joint in units of the file."""
+        """Return the expression for a joint's value in the file's unit; None if there is no such joint."""
         joint = self._joint(path)
         if joint is None:
             return None
@@ -96,7 +96,7 @@ class _FormulaReader:
         return joint.name if unit == 1 else f"({1 / unit:f}*{joint.name})"
 
     def _unit(self, joint: JointBuilder) -> float:
-        """Return the unit of a joint's values in the file [m or rad]."""
+        """Return the file's unit of a joint's value [m for prismatic joints, else rad]."""
         return self.library.metres(self.model) if AXES[joint.kind][0] == "P" else 1.0
 
     def _joint(self, path: str) -> JointBuilder | None:
@@ -109,7 +109,6 @@ class _FormulaReader:
         return self.library.follow(symbol, "formula", attribute="definitionURL") if is_named else None
 
     def _content(self, math: Element | None, name_of: _NameOf, depth: int) -> str:
-        """Return the expression of a ``<math>``."""
         content = next(children(math), None)
         if content is None:
             raise _FormulaError("it is empty")
@@ -145,7 +144,7 @@ class _FormulaReader:
         return f"if({parts[1]},{parts[0]},{self._choice(pieces[1:], name_of, depth + 1)})"
 
     def _apply(self, elements: list[Element], name_of: _NameOf, depth: int) -> str:
-        """Return the expression of an operator and its operands."""
+        """Return the expression of an operator applied to its operands, ``elements[0]`` and ``elements[1:]``."""
         kind = local_name(elements[0]) if elements else "apply"
         texts = [self._text(item, name_of, depth) for item in elements[1:] if local_name(item) not in _QUALIFIERS]
         if not texts:
@@ -163,7 +162,7 @@ class _FormulaReader:
         return text
 
     def _call(self, function: Element, texts: list[str], depth: int) -> str:
-        """Return the expression of a function that is defined in the file, or known to OpenRAVE by name."""
+        """Return the expression of a call of a function that the file defines, or that OpenRAVE knows by name."""
         name = "".join(words(function))
         if name in NAMED:  # OpenRAVE has three of them: SSSA, SASA and SASS
             return f"{name}({','.join(texts)})"
@@ -178,13 +177,13 @@ class _FormulaReader:
 
 
 def _own_equations(formula: Element, kind: str) -> list[Element]:
-    """Return the equations of a type in OpenRAVE's technique."""
+    """Return the ``<equation>`` elements of type ``kind`` in the formula's OpenRAVE technique."""
     techniques = (item for item in children(formula, "technique") if item.get("profile") == "OpenRAVE")
     return [item for technique in techniques for item in children(technique, "equation") if item.get("type") == kind]
 
 
 def _position(formula: Element) -> Element | None:
-    """Return the ``<math>`` for the position: OpenRAVE's own, else the common one."""
+    """Return the ``<math>`` of the joint value: from OpenRAVE's technique, else from ``<technique_common>``."""
     own = _own_equations(formula, "position")
     return child(own[0], "math") if own else child(formula, "technique_common", "math")
 

@@ -91,7 +91,7 @@ class GeometryReader:
                 return
 
     def _own(self, geometry: Element, T_link_frame: Pose) -> tuple[Mesh | None, bool]:
-        """Return the display mesh of a shape and its flag ``modifiable``, from ravemj's own extra."""
+        """Read ravemj's extra of a geometry: return its display mesh or None, and its flag ``modifiable``."""
         technique = next(own_techniques(geometry), None)
         render = child(technique, "render")
         target = None if render is None else self._library.follow(render, "geometry")
@@ -102,7 +102,7 @@ class GeometryReader:
         return self._mesh(drawn, None, T_link_frame, target).mesh, modifiable
 
     def _mesh(self, mesh: Mesh, scaling: Floats | None, T_link_frame: Pose, geometry: Element) -> TriMesh:
-        """Convert triangles to the geometry's frame; like OpenRAVE, take them as given in the link's frame."""
+        """Convert triangles from the link's frame to the geometry's, after ``scaling`` in the link's frame."""
         self._triangles += len(mesh.triangles)
         source = self._library.source(geometry)
         check_size(self._triangles, source)
@@ -116,7 +116,7 @@ class GeometryReader:
         return TriMesh(Mesh(vertices, mesh.triangles))
 
     def _groups(self, geometry: Element) -> list[tuple[str, Mesh]]:
-        """Return for each primitive element its material's symbol and its triangles [m]."""
+        """Return material symbol and triangles [m] of each primitive element of a geometry."""
         if geometry not in self._meshes:
             document = self._library.document_of(geometry)
             groups = triangle_meshes(document, geometry, self._library.metres(geometry))
@@ -128,7 +128,7 @@ class GeometryReader:
         return self._meshes[geometry]
 
     def _check_count(self, element: Element, readable: int) -> None:
-        """Report unread triangles; other polygons count as at least one triangle each."""
+        """Warn if fewer triangles than declared are readable; for other polygons, if none is readable."""
         count = attribute_number(element, "count", 0)
         if readable < count and (readable == 0 or local_name(element) == "triangles"):
             message = f"only {readable} of {count:.0f} can be read: indices lead nowhere, or numbers are missing"
@@ -155,7 +155,7 @@ class GeometryReader:
         return material.diffuse or missing, material.ambient or _AMBIENT, transparency
 
     def _primitive(self, info: Element) -> tuple[Shape, Pose] | None:
-        """Return the shape that replaces the triangles, and its pose in the geometry's frame."""
+        """Return the primitive that replaces the triangles, and its pose in the geometry's frame; None if none does."""
         for element in children(info, *_PRIMITIVES):
             shape = _shape(element, self._library.metres(element))
             if shape is not None:
@@ -169,7 +169,7 @@ class GeometryReader:
 
 
 def _shape(element: Element, metres: float) -> Shape | None:
-    """Return the shape of an element with a child for each size; None if a size is missing or not finite."""
+    """Return the primitive shape of an element with one child per size; None if a size is missing or not finite."""
     kind = _PRIMITIVES[local_name(element)]
     sizes: dict[str, object] = {}
     for name, form, optional in kind.sizes():

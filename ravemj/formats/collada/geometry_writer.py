@@ -55,7 +55,7 @@ class GeometryWriter:
             node.element("instance_material", symbol="material", target=f"#{self._material(geometry)}")
 
     def _material(self, geometry: Geometry) -> str:
-        """Return the id of the material of a shape; shapes of the same colours share one."""
+        """Return the id of a geometry's material; geometries of equal colours share one."""
         colours = (geometry.diffuse, geometry.ambient, geometry.transparency)
         name = self._known.get(colours)
         if name is None:
@@ -79,7 +79,7 @@ class GeometryWriter:
 
 
 def _write_info(out: XmlText, geometry: Geometry, T_link_geometry: Pose) -> None:
-    """Write the pose of a shape, its primitive type unless it is a mesh, and whether it is drawn."""
+    """Write a geometry's pose, its primitive type and sizes, and whether it is visible."""
     write_pose(out, T_link_geometry)
     tag = "cylinderz" if isinstance(geometry.shape, Cylinder) else _TAGS[type(geometry.shape)]
     with out.inside(tag):
@@ -91,7 +91,7 @@ def _write_info(out: XmlText, geometry: Geometry, T_link_geometry: Pose) -> None
 
 
 def _stored(mesh: Mesh, T_link_geometry: Pose) -> Mesh:
-    """Return a mesh as read from the file: in its link's frame, single precision, merged vertices."""
+    """Return a mesh as readers will read it: in the link's frame, single precision, duplicate vertices merged."""
     vertices = mesh.vertices
     if T_link_geometry != Pose():
         vertices = mesh.moved(T_link_geometry.matrix()).vertices
@@ -100,7 +100,7 @@ def _stored(mesh: Mesh, T_link_geometry: Pose) -> Mesh:
 
 
 def _write_mesh(out: XmlText, name: str, mesh: Mesh) -> None:
-    """Write the triangles of a mesh, unless it is empty."""
+    """Write a ``<mesh>`` with the triangles of a mesh; it is empty if there are none."""
     count = len(mesh.vertices)
     with out.inside("mesh"):
         if not len(mesh.triangles):

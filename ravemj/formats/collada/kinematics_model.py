@@ -68,13 +68,13 @@ class Names:
 
 
 class _FoundJoint(NamedTuple):
-    """A joint that an attachment refers to.
+    """Joint to which an attachment refers.
 
     Attributes:
         keys: All elements that represent the joint.
         built: The joint.
-        values: The bound values of its axes.
-        place: Index of its first DOF in the file.
+        values: Bound values of the joint's axes.
+        place: Index of the joint's first DOF in the file.
     """
 
     keys: tuple[Element, ...]
@@ -84,7 +84,7 @@ class _FoundJoint(NamedTuple):
 
 
 _LoopEnd = tuple[Element, int]
-"""An attachment of a joint that closes a loop, and the link that contains it."""
+"""Attachment of a joint that closes a kinematic loop, and the index of the link that contains it."""
 
 
 class ModelReader:
@@ -137,7 +137,7 @@ class ModelReader:
         read_formulas(self._library, self.model, self.joints, self._body)
 
     def _close_loops(self, ends: "list[_LoopEnd]") -> None:
-        """Read the joints that close loops, which OpenRAVE's reader ignores."""
+        """Add the joints that close kinematic loops, if ravemj wrote them; OpenRAVE's reader ignores all."""
         for start, parent in self.ends:
             path = start.get("joint")
             if next(own_techniques(start), None) is None:
@@ -191,10 +191,10 @@ class ModelReader:
         link.geometries += self._scene.geometry.read(node, pose_in_link, self._scene.bindings.moved)
 
     def _world(self, node: Node) -> Floats:
-        """Return the pose of a node in the world as OpenRAVE composes it.
+        """Return the 4x4 pose of a node in the world as OpenRAVE composes it.
 
         It is the pose of the root link times the transforms of the nodes below the link's node. For shapes of the
-        link's node itself, its transform is applied twice.
+        link's node itself, the node's transform is applied twice.
         """
         path = [*node.around()]
         if self._root not in path:
@@ -218,7 +218,7 @@ class ModelReader:
     def _add_joint(
         self, attachment: Element, links: tuple[int, int], T_parent_frame: Pose, T_parent_child: Pose
     ) -> Node | None:
-        """Read the joint of an attachment; return the node that it moves."""
+        """Read the joint to which an attachment refers; return the node that the joint moves, or None."""
         holder, joint = self._joint(attachment)
         axes = [
             AxisReader(self._library, axis, *self._infos.get(axis, ()))
@@ -234,7 +234,7 @@ class ModelReader:
         return next((item.node for item in bound if item is not None and item.node is not None), None)
 
     def _joint(self, attachment: Element) -> tuple[Element, Element]:
-        """Return the element that an attachment refers to, and its ``<joint>``."""
+        """Return the element to which an attachment refers, and its ``<joint>``, which may be the same."""
         path = attachment.get("joint") or ""
         resolved = self._library.resolve(path, self.model)
         joint = None if resolved is None else resolved.element
@@ -275,7 +275,7 @@ class ModelReader:
 
 
 def _weld_turn(axis: AxisReader, T_parent_frame: Pose, T_parent_child: Pose) -> Wxyz:
-    """Return the rotation of a weld's child in its parent, rotated by the middle of the written limits."""
+    """Return the orientation of a weld's child in its parent after a rotation by the middle of the written limits."""
     turn = wxyz_from_axis_angle(axis.direction, axis.wrap)
     T_frame_child = T_parent_frame.inverse() @ T_parent_child
     return multiply(T_parent_frame.wxyz, multiply(turn, T_frame_child.wxyz))

@@ -139,7 +139,7 @@ class Library:
         return next((item for item in items if item is not None), None)
 
     def _document(self, here: ColladaDocument, uri: str, element: Element) -> ColladaDocument | None:
-        """Return the document of a URI in another document; a missing or malformed file is reported."""
+        """Return the document that a URI in ``here`` names; None, with a warning, if it is missing or malformed."""
         archive, name = self._documents.places[here.path]
         plain = unquote(uri.partition(":")[2].lstrip("/") if uri.startswith("openrave:") else uri.removeprefix("file:"))
         plain = plain.removeprefix("./")  # so that a file has one name
@@ -237,7 +237,7 @@ class Library:
         return None if inner is None else ResolvedReference(inner.element, (*place.through, *inner.through))
 
     def _scope(self, element: Element) -> dict[str, ResolvedReference]:
-        """Return the elements below an element by sid; of equal sids the nearest, then the first is used."""
+        """Return the descendants of an element by sid, also in instantiated models; of equal sids the nearest one."""
         names = self._scopes.get(element)
         if names is not None:
             return names
@@ -262,7 +262,7 @@ class Library:
         return names
 
     def _target(self, element: Element) -> Element | None:
-        """Return the target of an instance; None for other elements."""
+        """Return the model to which an instance element refers; None for other elements."""
         if not element.get("url") or local_name(element) not in _MODELS:
             return None
         return self.follow(element)
@@ -309,7 +309,7 @@ class Library:
 
 
 def _reference(element: Element) -> str | None:
-    """Return the path to which a parameter refers; None for other elements and for parameters with a literal value."""
+    """Return the path to which a bind or parameter refers; None for other elements and for literal values."""
     if local_name(element) == "bind":
         param = child(element, "param")
         return None if param is None else param.get("ref") or "".join(words(param))

@@ -89,7 +89,7 @@ class _Math:
 
 
 def _operands(function: str, arguments: Sequence[Node]) -> list[Node]:
-    """Return all terms of a nested sum or product, else the arguments themselves."""
+    """Return all terms of a nested sum, or factors of a nested product; for other functions the arguments."""
     rest: list[Node] = []
     while function in {"add", "mul"} and isinstance(arguments[0], Call) and arguments[0].function == function:
         rest.append(arguments[1])

@@ -59,7 +59,7 @@ class ExtraReader:
                 self._read_collision(technique, scope)
 
     def _link(self, element: Element, scope: Element, attribute: str = "link") -> int | None:
-        """Return the index of the link named by an attribute; None, with a warning, if it does not exist."""
+        """Return the index of the link that an attribute names; None, with a warning, if it does not exist."""
         path = element.get(attribute) or ""
         index = self._found(path, scope, self.links)
         if index is None:
@@ -77,7 +77,7 @@ class ExtraReader:
         return index
 
     def _found(self, path: str, scope: Element, parts: Mapping[Element, int]) -> int | None:
-        """Return the index of the part at a path, relative to a scope or else to a model."""
+        """Return the index in ``parts`` of the element at a path relative to ``scope`` or a model, or None."""
         for around in (scope, *self.models):
             resolved = self.library.resolve(path, around) if path else None
             if resolved is not None and resolved.element in parts:
@@ -106,7 +106,7 @@ class ExtraReader:
         self.body.manipulators.append(built)
 
     def _closing(self, element: Element, count: int) -> list[float]:
-        """Return the closing sign of each axis of a gripper joint."""
+        """Return the sign of the closing direction of each of the ``count`` axes of a gripper joint; 0 if missing."""
         directions = children(element, "chucking_direction", "closing_direction")
         signs = [self.library.number(direction) or 0.0 for direction in directions]
         return (signs + [0.0] * count)[:count]
@@ -118,7 +118,7 @@ class ExtraReader:
         self.body.sensors.append(SensorBuilder(read_sensor(self.library, extra, technique, link, pose)))
 
     def _read_actuator(self, technique: Element, system: Element) -> None:
-        """Set the torque limit and the armature of a joint, if the file has a motor."""
+        """Set a joint's torque limit, armature and friction from its motor, if the technique binds one."""
         bound, instance = child(technique, "bind_actuator"), child(technique, "instance_actuator")
         if bound is None or instance is None:
             return
@@ -151,7 +151,7 @@ class ExtraReader:
 
 
 def _driven(axis: Axis, motor: Element) -> Axis:
-    """Return an axis with its motor's torque limit and inertia, both converted by the gear, and friction."""
+    """Return an axis with the friction of its motor, and its torque limit and inertia converted by the gear ratio."""
 
     def number(name: str) -> float:
         values = numbers(child(motor, name))

@@ -88,7 +88,7 @@ def read_document(library: Library, document: ColladaDocument, wanted: str = "")
 
 
 class _System(NamedTuple):
-    """Elements of an articulated system, the outermost first, or of a model outside of systems."""
+    """Nested articulated systems, the outermost first, and their models; without systems, a single model."""
 
     systems: list[Element]
     models: list[Element]
@@ -96,17 +96,17 @@ class _System(NamedTuple):
 
     @property
     def id(self) -> str:
-        """Id of the outermost part; empty if it has none."""
+        """Id of the outermost system, else of the model; empty if it has none."""
         return (self.systems or self.models)[0].get("id") or ""
 
     def has(self, name: str) -> bool:
-        """Return whether a part of the system, or its instance, has this name."""
+        """Return whether a system or model has this id or sid, or is instantiated by this URL."""
         parts = (*self.systems, *self.models)
         return any(name in (part.get("id"), part.get("sid"), (part.get("url") or "").lstrip("#")) for part in parts)
 
 
 def _body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | None:
-    """Return the body of an instance of a system or model; None if it is not wanted, or has no model."""
+    """Return the body of an instance of a system or model; None if it is not the one wanted, or has no model."""
     parts = _System([], [], {})
     is_system = local_name(instance) == "instance_articulated_system"
     if is_system:
@@ -156,7 +156,7 @@ def _body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | 
 def _take_apart(
     scene: SceneContext, instance: Element, parts: _System, motions: dict[Element, Element], depth: int
 ) -> None:
-    """Descend from an instance of a system to its models; collect the systems on the path in ``parts``."""
+    """Collect in ``parts`` the systems and models that an instance of a system contains, recursively."""
     system = scene.library.follow(instance)
     if system is None or depth > _MAX_DEPTH:
         return
@@ -174,7 +174,7 @@ def _take_apart(
 
 
 def _axis_infos(scene: SceneContext, part: Element) -> dict[Element, Element]:
-    """Return the ``<axis_info>`` elements of a part of a system, by the axis that they describe."""
+    """Return the ``<axis_info>`` elements of a system's ``<kinematics>`` or ``<motion>``, by axis."""
     infos: dict[Element, Element] = {}
     for info in children(child(part, "technique_common"), "axis_info"):
         axis = scene.library.resolve(info.get("axis") or "", part)
@@ -186,7 +186,7 @@ def _axis_infos(scene: SceneContext, part: Element) -> dict[Element, Element]:
 
 
 def _node_body(library: Library, geometry: GeometryReader, node: Node) -> BodyBuilder | None:
-    """Return the single-link body that OpenRAVE creates for a node; None if it shows no geometry."""
+    """Return the single-link body that OpenRAVE creates for a scene node; None if the node has no geometry."""
     source = library.source(node.element)
     name = valid_name(node.name)
     T_world_link = rigid_part(node.world, source)

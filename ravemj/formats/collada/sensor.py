@@ -62,7 +62,7 @@ def read_loose(library: Library, scene: Element) -> Iterator[AttachedSensor]:
 
 
 def _device(library: Library, sensor: Element, device: Device) -> Device:
-    """Return the device described by a ``<sensor>``. Elements that are not properties of the device are skipped."""
+    """Return ``device`` with the properties in a ``<sensor>``; elements that are no properties of it are skipped."""
     tags = {name.lower(): tag for name, tag in sensor_tags(device).items()}
     for element in children(sensor):
         tag = tags.get(local_name(element).lower())
@@ -80,7 +80,7 @@ def _device(library: Library, sensor: Element, device: Device) -> Device:
 
 
 def _device_type(sensor: Element) -> str:
-    """Return the name of the device: the interface named by a ``<sensor>``, else its type."""
+    """Return the type of a ``<sensor>``: the interface that it names, else its ``type`` attribute."""
     for technique in children(child(sensor, "interface_type"), "technique"):
         named = " ".join(words(child(technique, "interface")))
         if named:

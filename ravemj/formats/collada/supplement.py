@@ -69,7 +69,7 @@ class SupplementReader:
                     self.body.grabs.append(GrabBuilder(element.get("body") or "", link, pose, ignored))
 
     def _read_names(self, technique: Element) -> None:
-        """Read the original names, which COLLADA readers change, and the order of all parts."""
+        """Restore the original names, which COLLADA readers change, and the original order of joints and links."""
         body = self.body
         body.name = _text(child(technique, "name")) or body.name
         body.description = _text(child(technique, "description")) or body.description
@@ -97,7 +97,7 @@ class SupplementReader:
     def _order(
         self, listed: list[Element], technique: Element, parts: Mapping[Element, _Part], built: list[_Part]
     ) -> list[int] | None:
-        """Return the indices of the listed parts; None unless all parts of the body are listed."""
+        """Return the indices in ``built`` of the listed links or joints; None unless each is listed exactly once."""
         index_of = {id(part): index for index, part in enumerate(built)}
         ordered = (self._found(element.get("path") or "", technique, parts) for element in listed)
         order = [index_of.get(id(part), -1) for part in ordered]
@@ -123,7 +123,7 @@ class SupplementReader:
 
 
 def _name_joints(body: BodyBuilder, names: Sequence[str], listed: Sequence[Element]) -> None:
-    """Give joints their listed names, also where equations and manipulators refer to them."""
+    """Rename joints as listed, also in mimic equations and manipulators."""
     from ravemj.model.expressions import substitute  # noqa: PLC0415 - rarely wanted
 
     renamed = {name: _text(element) for name, element in zip(names, listed, strict=True)}

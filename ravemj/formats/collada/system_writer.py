@@ -58,13 +58,13 @@ class SystemWriter:
         self._write_scene()
 
     def _axes(self) -> Iterator[tuple[int, int, Axis]]:
-        """Yield all axes, each with the index of its joint and its own index in the joint."""
+        """Yield (joint index, index of the axis in the joint, axis) of all axes."""
         for index, joint in enumerate(self._body.all_joints):
             for place, axis in enumerate(joint.axes):
                 yield index, place, axis
 
     def _write_parameters(self, out: XmlText, scope: str, tree: Tree, inner: str = "") -> None:
-        """Write the parameters of a model and its axes in a scope; ``inner`` is the scope of their references."""
+        """Write parameters of a model and its axes in ``scope``, which refer to those in ``inner`` if given."""
         named = {f"{tree.model}_inst": f"{tree.model}_inst"}
         for index in tree.joints:
             for place in range(len(self._joints[index].axes)):
@@ -74,7 +74,7 @@ class SystemWriter:
             out.element_inside("newparam", "SIDREF", named_here, sid=f"{scope}_{name}")
 
     def _write_kinematics(self, index: int, place: int, axis: Axis) -> None:
-        """Write DOF, limits, weight and resolution of an axis."""
+        """Write limits, planning weight and resolution of an axis, and whether it is a DOF."""
         out, joint = self._sections.systems, self._joints[index]
         sid = f"{self._name}_axis{index}_{place}"
         with out.inside("axis_info", sid=sid, axis=f"{self._joint_path(index)}/axis{place}"):
@@ -95,14 +95,13 @@ class SystemWriter:
                     out.element_inside("max", "float", _in_file(joint, place, axis.upper))
 
     def _write_motion(self, index: int, place: int, axis: Axis) -> None:
-        """Write the velocity and acceleration limits of an axis."""
         out, joint = self._sections.systems, self._joints[index]
         with out.inside("axis_info", axis=f"{self._name}_kinematics/{self._name}_axis{index}_{place}"):
             out.element_inside("speed", "float", _in_file(joint, place, axis.max_velocity))
             out.element_inside("acceleration", "float", _in_file(joint, place, axis.max_acceleration))
 
     def _write_scene(self) -> None:
-        """Write the instance of the kinematics scene, with its bindings of joint axes to nodes and values."""
+        """Instantiate the system in the kinematics scene; bind models to nodes, and axes to nodes and values."""
         out, scope = self._sections.kinematics_scene, f"{self._name}_scene"
         url = f"#{self._name}_motion"
         with out.inside("instance_articulated_system", url=url, sid=scope, name=self._body.name):
@@ -117,7 +116,7 @@ class SystemWriter:
                 self._bind_axes(tree, index, scope)
 
     def _bind_axes(self, tree: Tree, index: int, scope: str) -> None:
-        """Bind the axes of a joint to their nodes and, if they are DOFs, to their values."""
+        """Bind a joint's axes to node transforms and, if they are DOFs, to joint values."""
         joint = self._joints[index]
         for place, axis in enumerate(joint.axes):
             name = f"joint{self._number}.{index}_axis{place}"
@@ -126,7 +125,7 @@ class SystemWriter:
             bind_axis(self._sections.bindings, target, f"{scope}_joint{index}_axis{place}", value)
 
     def _write_extras(self) -> None:
-        """Write OpenRAVE's extras of the body, and ravemj's own for the rest."""
+        """Write OpenRAVE's extras of the body, and ravemj's extras for what these cannot represent."""
         out, body = self._sections.systems, self._body
         kind = ("robot", "GenericRobot") if body.is_robot else ("kinbody", "KinBody")
         with inside_extra(out, "interface_type"):
@@ -175,7 +174,7 @@ class SystemWriter:
         write_device(out, self._sections.sensors, name, sensor)
 
     def _write_actuator(self, index: int, axis: Axis) -> None:
-        """Write a motor without a gear."""
+        """Write the motor of a joint, with a gear ratio of 1."""
         out, name = self._sections.systems, f"{self._name}_actuator{index}"
         out.element("bind_actuator", joint=self._joint_path(index))
         out.element("instance_actuator", url=f"#{name}")
@@ -188,10 +187,10 @@ class SystemWriter:
             library.element("viscous_friction", axis.viscous_friction)
 
     def _write_supplement(self) -> None:
-        """Write the extras read by ``supplement``.
+        """Write the extras that the module ``supplement`` reads.
 
-        They contain the order of parts, names, which COLLADA readers change, values of joints without DOFs, and torques
-        that differ between the axes of a joint, since COLLADA has one motor per joint.
+        They contain the order of links and joints, the names that COLLADA readers change, values of joints without
+        DOFs, and torques that differ between the axes of a joint, since COLLADA has one motor per joint.
         """
         out, body = self._sections.systems, self._body
         out.element("name", body.name)

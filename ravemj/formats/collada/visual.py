@@ -62,7 +62,7 @@ class Node:
         return node
 
     def _below(self) -> dict[str, "Node"]:
-        """Return this node and its descendants by name, also by the names of their transforms; the nearest win."""
+        """Return this node and its descendants by name or by a transform's sid; of equal names, the nearest node."""
         if self.named is None:
             self.named = {}
             queue: deque[Node] = deque([self])

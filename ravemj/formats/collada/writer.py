@@ -19,7 +19,7 @@ from ravemj.model.scene import Scene
 NAMESPACE = "http://www.collada.org/2008/03/COLLADASchema"
 
 _NO_TIME = "1970-01-01T00:00:00Z"
-"""Time required by the standard; constant, so that equal scenes give equal files."""
+"""Creation time, which COLLADA requires; constant, so that equal scenes give equal files."""
 
 
 def write(scene: Scene, diagnostics: Diagnostics, external: Mapping[str, ExternalBody] | None = None) -> str:

@@ -19,7 +19,7 @@ _RENAMED = {"xrange": "range"}
 
 
 class _ArrayUnpickler(pickle.Unpickler):
-    """Unpickler that permits only arrays and plain containers."""
+    """Unpickler that permits only NumPy arrays and plain containers."""
 
     def find_class(self, module: str, name: str, /) -> Any:  # noqa: ANN401 - as the base class
         if (module, name) == ("_codecs", "encode"):
@@ -32,7 +32,7 @@ class _ArrayUnpickler(pickle.Unpickler):
 
 
 def _encoder() -> Callable[[str, str], bytes]:
-    """Return a new function that encodes bytes of Python 2, so that pickles cannot modify a shared one."""
+    """Return a new ``_codecs.encode`` that permits only Latin-1; a pickle could modify a shared one."""
 
     def encode(text: str, encoding: str = "latin1") -> bytes:
         if encoding != "latin1":

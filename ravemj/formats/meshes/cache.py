@@ -98,10 +98,10 @@ def _by_content(
     read: Callable[[bytes], tuple[Parts, ReferencedFiles]],
     permits: Callable[[str], bool],
 ) -> tuple[Parts, ReferencedFiles]:
-    """Return the parts of a mesh file from the cache, or read and cache them; and the other files that it refers to.
+    """Return a mesh file's parts, and the other files to which it refers; from the cache, or read and cached now.
 
-    If there are other files, the cache entry is valid for the folder ``home`` only, since their names are relative to
-    it. All of them must be permitted.
+    If the mesh file refers to others, the entry is valid only for the folder ``home``, since their names are
+    relative, and only while all of them are permitted and unchanged.
     """
     alone = f"{_name(readers_digest(), kind.encode(), content)}.mesh"
     at_home = f"{_name(readers_digest(), kind.encode(), content, os.fsencode(home))}.mesh"
@@ -119,7 +119,7 @@ def _by_content(
 
 
 def _name(readers: bytes, *parts: bytes) -> str:
-    """Return the name of a cache file: a hash of the readers and of all inputs."""
+    """Return the file name of a cache entry: a hash of the readers' version and all inputs."""
     key = hashlib.sha256(readers)
     for part in parts:
         key.update(b"%d\0" % len(part))
@@ -146,7 +146,7 @@ def reader_sources() -> list[str]:
 
 
 def _loaded(folder: Path, entry: str) -> tuple[Parts, dict[str, str]] | None:
-    """Return the content of an entry; None if it is missing, damaged, or a renamed copy of another entry."""
+    """Return parts and referenced files of an entry; None if it is missing, damaged, or a renamed copy of another."""
     file = f"{folder}/{entry}"
     try:
         descriptor = os.open(file, _READ)  # a model has many meshes, and ``open`` takes twice the time

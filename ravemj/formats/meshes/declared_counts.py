@@ -68,7 +68,7 @@ def _check_held(count: int, most: int, what: str, source: Source) -> None:
 
 
 class _Gltf:
-    """The JSON part of a glTF or GLB file."""
+    """JSON part of a glTF or GLB file."""
 
     def __init__(self, content: bytes, size: int, source: Source) -> None:
         check_json(content, source)
@@ -79,7 +79,7 @@ class _Gltf:
         self._held = size + sum(int(view.get("byteLength", 0)) for view in self._views)
 
     def check(self) -> None:
-        """Check all counts and instances."""
+        """Raise if the file declares more bytes, triangles or mesh instances than it contains or ravemj reads."""
         check_bytes(self._held, "the buffers have", self._source)
         check_bytes(sum(map(self._size, self._accessors)), "the accessors have", self._source)
         triangles = [self._triangles(mesh) for mesh in self._entries("meshes")]
@@ -92,7 +92,7 @@ class _Gltf:
         return cast("list[Entry]", self._header.get(name, []))
 
     def _size(self, accessor: Entry) -> int:
-        """Return the number of bytes that trimesh allocates for an accessor."""
+        """Return the number of bytes that trimesh allocates for an accessor; raise if its count exceeds its data."""
         count = accessor["count"]
         item = _COMPONENT_BYTES[accessor["componentType"]] * _COMPONENTS[accessor["type"]]
         what = "items in an accessor"
@@ -109,7 +109,7 @@ class _Gltf:
         return count * item
 
     def _triangles(self, mesh: Entry) -> int:
-        """Return an upper bound of the number of triangles in a mesh, and of a third of its vertices."""
+        """Return an upper bound of the number of triangles in a mesh; three times as many bound its vertices."""
         total = 0
         for primitive in cast("list[Entry]", mesh["primitives"]):
             used: list[int | None] = [primitive["attributes"].get("POSITION"), primitive.get("indices")]
@@ -118,7 +118,7 @@ class _Gltf:
         return total
 
     def _shown(self) -> list[Entry]:
-        """Return the nodes of the scene; check that they form trees of limited depth."""
+        """Return all nodes of the scene; raise if they do not form trees, or the trees are too deep."""
         nodes = self._entries("nodes")
         scenes, number = self._entries("scenes"), cast("int", self._header.get("scene", 0))
         level: list[int] = scenes[number].get("nodes", []) if scenes else []

@@ -93,7 +93,7 @@ class FileContent:
         return None if data is None else replace(self, path=path, data=data, parents=parents)
 
     def _place(self, name: str) -> Source:
-        """Return the position of the first line that contains a name, if this file is text."""
+        """Return the source line where a name first occurs; line 0 if it does not, or if the file is binary."""
         at = -1 if b"\0" in self.data else self.data.find(name.encode(errors="replace"))
         line = self.data.count(b"\n", 0, at) + 1 if at >= 0 else 0
         return Source(self.path, line, self.access.files.get(self.path))

@@ -25,7 +25,7 @@ A lookup hashes the mesh, whose digest all callers need anyway.
 """
 
 _NEEDLE = 1e-7
-"""Width of a mesh relative to its length below which rounding cancels the inertia about its axis."""
+"""Width-to-length ratio of a mesh below which rounding errors exceed the inertia about its long axis."""
 
 
 def collision_form(mesh: Mesh) -> CollisionForm:

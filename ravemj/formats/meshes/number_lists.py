@@ -31,7 +31,7 @@ def parse_list(text: str, number: Callable[[str], float]) -> NDArray[Any]:
 
 
 def _pieces(text: str) -> Iterator[list[str]]:
-    """Yield the words of a text in lists of about a megabyte, at least one list."""
+    """Yield the words of a text in lists of about a megabyte; an empty text yields one empty list."""
     start = 0
     while True:
         space = _SPACE.search(text, start + _PIECE)

@@ -38,8 +38,6 @@ class _MtlMaterial:
 
 
 class _ObjParser:
-    """State of the parser."""
-
     def __init__(self, file: FileContent) -> None:
         self.file = file
         self._triangles = 0
@@ -74,7 +72,7 @@ class _ObjParser:
         check_size(self._triangles, self.file.source)
 
     def _library(self, name: str) -> None:
-        """Read materials; the last one is used until the first ``usemtl``, as in OpenRAVE's importer."""
+        """Read a material library; its last material is used until the first ``usemtl``, as in OpenRAVE's importer."""
         file = self.file.refer(name)
         for line in [] if file is None else file.data.decode("latin-1").splitlines():
             words = line.split()
@@ -156,7 +154,7 @@ def _name_of(text: str) -> str:
 
 
 def _point(numbers: list[float]) -> tuple[float, ...]:
-    """Return the coordinates; four numbers are homogeneous, six or more end in a colour."""
+    """Return x, y, z of a ``v`` line: four numbers are homogeneous, six or more end in a colour."""
     x, y, z = numbers[:3]
     weight = numbers[3] if len(numbers) == 4 and numbers[3] else 1.0
     return (x / weight, y / weight, z / weight)

@@ -69,16 +69,16 @@ def triangles(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats
 
 
 def _fans_about_the_last(starts: Ints, sizes: Ints) -> Ints:
-    """Triangulate convex polygons in the order of ear clipping, which cuts the corners from the first one on."""
+    """Triangulate convex polygons as fans about their last corner, the order in which ear clipping cuts them."""
     triangles = fans(starts, sizes)
     first = np.repeat(starts + sizes - 1, np.maximum(sizes - 2, 0))
     return np.stack([first, triangles[:, 1] - 1, triangles[:, 2] - 1], axis=1)
 
 
 def _halves(points: Floats, starts: Ints) -> Ints:
-    """Halve quadrilaterals, which may be bent, at the first corner whose angles to the diagonal exceed pi.
+    """Split quadrilaterals, which may be bent, along a diagonal; return triangles as corner indices.
 
-    If there is none, they are halved at the first corner, as in OpenRAVE's importer.
+    It starts at the first corner with more than pi between its edges (reflex), else at the first, as in OpenRAVE.
     """
     around = (np.arange(4)[:, np.newaxis] + np.arange(1, 4)) % 4  # for each corner the three others
     corners = points[starts[:, np.newaxis] + np.arange(4)]
@@ -138,7 +138,7 @@ def strips(sizes: Ints, index: Ints) -> Ints:
 
 
 def _concave(points: Floats, starts: Ints, sizes: Ints) -> NDArray[np.bool_]:
-    """Return a mask of the polygons that have a reflex corner and are small enough for ear clipping."""
+    """Return a mask of the polygons that have a reflex corner and few enough corners for ear clipping."""
     concave = np.zeros(len(sizes), np.bool_)
     for size in np.unique(sizes[(sizes > 3) & (sizes <= _MAX_CLIPPED)]).tolist():
         same = np.flatnonzero(sizes == size)
@@ -152,7 +152,7 @@ def _concave(points: Floats, starts: Ints, sizes: Ints) -> NDArray[np.bool_]:
 
 
 def _flattened(polygon: Floats) -> Floats:
-    """Return the corners in the polygon's plane, counter-clockwise."""
+    """Return the 2D corners of a 3D polygon, projected along a coordinate axis, in counter-clockwise order."""
     corners = polygon - polygon[0]
     normal = np.cross(corners, np.roll(corners, -1, axis=0)).sum(axis=0)
     drop = int(np.argmax(np.abs(normal)))
@@ -164,7 +164,7 @@ def _ear(points: Floats) -> tuple[int, int]:
     """Find an ear: a convex corner without any other corner inside its triangle.
 
     Returns:
-        Its position, and the number of corners examined; an arbitrary position if there is none.
+        Index of the ear's corner, or an arbitrary index if there is no ear; and the number of corners examined.
     """
     before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
     convex: list[int] = np.flatnonzero(_turn(before, points, after) > 0).tolist()
@@ -178,5 +178,5 @@ def _ear(points: Floats) -> tuple[int, int]:
 
 
 def _turn(a: Floats, b: Floats, c: Floats) -> Floats:
-    """Return twice the signed areas of triangles, positive if counter-clockwise."""
+    """Return twice the signed areas of the 2D triangles a, b, c, positive if counter-clockwise."""
     return (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])

@@ -23,7 +23,7 @@ _COLOURS: dict[str, tuple[Rgb, Rgb]] = {
     "glb": (WHITE, BLACK),
     "gltf": (WHITE, BLACK),
 }
-"""Diffuse and ambient colour of files without materials in OpenRAVE's importer."""
+"""Diffuse and ambient colour by file type that OpenRAVE's importer gives to files without materials."""
 
 
 def read_with_trimesh(file: FileContent) -> tuple[MeshPart, ...]:
@@ -70,7 +70,7 @@ class _References(Mapping[str, bytes]):
 
 
 def _geometries(file: FileContent, kind: str) -> list[tuple[Floats, Floats | None]]:
-    """Return corners and, if there is a material, its red, green, blue and opacity."""
+    """Return triangle corners and RGBA colour of each geometry in a file; the colour is None without a material."""
     data = file.data
     if kind == "ply":  # trimesh takes headers for UTF-8, and comments of older programs are Latin-1
         header, end, rest = data.partition(b"end_header")

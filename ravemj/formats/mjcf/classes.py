@@ -17,7 +17,7 @@ _LEAST = 16  # characters that a class has to save in each element
 
 
 class _Class(NamedTuple):
-    """Attributes that elements share, and their previous default class."""
+    """MJCF default class to create: tag of its elements, parent class, and the attributes that they share."""
 
     tag: str
     parent: str
@@ -48,7 +48,7 @@ def add_classes(document: MjcfSections) -> None:
 
 
 def _with_class(line: str, shared: _Class, name: str) -> str:
-    """Return an element with a class in place of the attributes defined in the class."""
+    """Return an element's line with a class in place of the shared attributes."""
     for attribute, value in shared.attributes:
         line = line.replace(f' {attribute}="{value}"', "", 1)
     if shared.parent:
@@ -58,7 +58,7 @@ def _with_class(line: str, shared: _Class, name: str) -> str:
 
 
 def _declare(document: MjcfSections, shared: _Class, name: str) -> None:
-    """Declare a class, nested in the previous class of its elements."""
+    """Insert the ``<default>`` of a class, nested in the elements' previous class if they have one."""
     start = document.lines.index("  <default>")
     indent = 2
     if shared.parent:

@@ -33,7 +33,7 @@ MECHANISM_MEMORY = "1M"
 _MANY_BODIES = 1000
 
 _LEAST_ROOM = 1e-6
-"""Half the written range [rad or m] of a joint without range that is not a weld."""
+"""Half the range [rad or m] written for a movable joint whose limits coincide."""
 
 _LOCK_SOLREF, _LOCK_SOLIMP = (0.004, 1), (0.999, 0.9999, 1e-6)
 """Limit parameters of a joint without range, as stiff as MuJoCo allows, so that a standing robot does not sink."""
@@ -126,7 +126,7 @@ def write(scene: Scene, diagnostics: Diagnostics, options: Options | None = None
 
 
 def _write_option(out: XmlLines, scene: Scene, options: Options) -> None:
-    """Write gravity, time step and integrator if they are not the defaults; MuJoCo's Euler treats servos explicitly."""
+    """Write gravity, time step and integrator if not MuJoCo's defaults; servos need an implicit integrator."""
     servos = options.actuators in {"position", "velocity"}
     attributes: dict[str, Attribute | None] = {
         "gravity": scene.gravity,
@@ -138,10 +138,10 @@ def _write_option(out: XmlLines, scene: Scene, options: Options) -> None:
 
 
 def _memory(lines: Sequence[str]) -> str:
-    """Return the working memory that MuJoCo's broad phase needs for many bodies; empty if the default suffices.
+    """Return the ``memory`` size, such as "40M", that MuJoCo's broad phase needs; empty if the default suffices.
 
-    The default grows with the square of the DOFs (60 bytes, measured on MuJoCo 4.0), the required memory with that of
-    the bodies (4.05 bytes).
+    The default grows with the square of the number of DOFs (60 bytes, measured on MuJoCo 4.0), the required memory
+    with the square of the number of bodies (4.05 bytes).
     """
     bodies = sum("<body " in line for line in lines)
     dofs = sum(("<joint " in line) + 6 * ("<freejoint" in line) for line in lines)
@@ -152,7 +152,7 @@ def _memory(lines: Sequence[str]) -> str:
 
 @dataclass(slots=True)
 class _UniqueNames:
-    """Names in use, by kind of part."""
+    """Names in use in the MJCF, by kind of element."""
 
     diagnostics: Diagnostics
     taken: dict[str, set[str]] = field(
@@ -160,7 +160,7 @@ class _UniqueNames:
     )
 
     def give(self, kind: str, body: KinBody, name: str) -> str:
-        """Return a unique name for a part: its own if that is unused."""
+        """Reserve and return a unique name: ``name`` or, with a warning, ``name`` after the body's name."""
         unique = name
         while unique in self.taken[kind]:
             unique = f"{body.name}/{unique}"
@@ -172,8 +172,6 @@ class _UniqueNames:
 
 
 class _MjcfWriter:
-    """Writes the sections of the document, body by body."""
-
     def __init__(self, diagnostics: Diagnostics, options: Options) -> None:
         self.diagnostics = diagnostics
         self.options = options
@@ -238,7 +236,7 @@ class _MjcfWriter:
         return (first,) if is_single else (first, self._given.give("joint", body, f"{name}_1"))
 
     def _is_free(self, body: KinBody) -> bool:
-        """Return whether the roots of a body get free joints."""
+        """Return whether the root links of a body get free joints."""
         if self.options.mechanism_only or (self.options.free_robots and body.is_robot):
             return True
         return self.options.free_bases and not any(link.static for link in body.links)
@@ -246,7 +244,7 @@ class _MjcfWriter:
     def _write_tree(
         self, index: int, body: KinBody, names: BodyNames, merging: Merging, welds: WeldGroups
     ) -> tuple[tuple[int, ...], ...]:
-        """Write the links; return for each the number of geoms of each geometry."""
+        """Write the links of a body; return for each link the number of geoms per geometry."""
         geoms: list[tuple[int, ...]] = [()] * len(body.links)
         free = self._is_free(body)
         pending = [(link, False) for link in reversed(range(len(body.links))) if link not in merging.placing]
@@ -271,7 +269,7 @@ class _MjcfWriter:
         return tuple(geoms)
 
     def _write_shapes(self, body: KinBody, link: int, merging: Merging) -> tuple[tuple[int, ...], bool]:
-        """Write the geoms of a link; return their number for each geometry, and whether one of them collides."""
+        """Write the geoms of a link; return the number of geoms per geometry, and whether any of them collides."""
         if self.options.mechanism_only:
             return (), False
         T_body_link = merging.pose(link)
@@ -300,7 +298,7 @@ class _MjcfWriter:
         self._write_inertial(index, link, body, merging)
 
     def _source_text(self, source: Source) -> str:
-        """Return the source of a link for a comment, relative to the model's folder if this is known."""
+        """Return a comment with the source file and line of a link, relative to the model's folder if that is known."""
         folder = self.options.folder
         if folder is None or isinstance(source, Origin) or not os.path.exists(source.file):
             return str(source)

@@ -86,7 +86,7 @@ class EqualityWriter:
         )
 
     def _coefficients(self, joint: Joint, leader: Joint, expression: "Expression") -> list[float]:
-        """Return the polynomial of a mimic joint: exact, or fitted over the leader's range."""
+        """Return the polynomial coefficients of a mimic joint's equation: exact, or fitted over the leader's range."""
         variable = expression.variables[0]
         exact = expression.polynomial(variable)
         if exact is not None:
@@ -137,6 +137,6 @@ class EqualityWriter:
 
 
 def _without_welds(expression: "Expression", joints: Sequence[Joint], names: Sequence[tuple[str, ...]]) -> "Expression":
-    """Return the expression with constants in place of fixed joints."""
+    """Return a mimic expression with the values of fixed joints inserted as constants."""
     fixed = {f"joint{index}": joints[index].axes[0].value for index in leaders(expression) if not names[index]}
     return expression.with_values(fixed) if fixed else expression

@@ -97,7 +97,7 @@ def excluded_pairs(body: KinBody, welds: WeldGroups) -> list[Pair]:
 
 
 def _cells(labels: list[int], welds: WeldGroups) -> dict[int, _Cells]:
-    """Return the solid links by label and weld group."""
+    """Return the links with collision geometry by connected component (``labels``), then by weld group."""
     cells: dict[int, _Cells] = {}
     for link in welds.solid:
         cells.setdefault(labels[link], {}).setdefault(welds.group[link], []).append(link)

@@ -14,7 +14,7 @@ _REFUSED = {
     "compiler": "the model has angles in radians and meshes in assets/",
 }
 _SINGLE = {"option", "size", "visual", "statistic"}
-"""Sections of settings, in which a later value overrides an earlier one."""
+"""MJCF sections of settings, in which a later value overrides an earlier one."""
 
 
 def append(document: MjcfSections, path: AnyPath) -> None:
@@ -45,7 +45,7 @@ def append(document: MjcfSections, path: AnyPath) -> None:
 
 
 def _check(element: Element, section: str, document: MjcfSections) -> None:
-    """Refuse an element with content that cannot be added."""
+    """Raise if an element or one of its descendants cannot be added, by its tag or by a name in use."""
     taken = document.names()
     pending = [element]
     while pending:

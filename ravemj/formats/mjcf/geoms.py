@@ -65,7 +65,7 @@ class MjcfGeomWriter:
         )
 
     def _write_mesh(self, geometry: Geometry, mesh: Mesh, out: XmlLines, *, seen: bool) -> bool:
-        """Write a mesh for display and collision, in one geom if possible."""
+        """Write a mesh for collision and, if ``seen``, display, in one geom if possible; return whether it collides."""
         hulls = self._hulls(geometry, mesh)
         both = seen and hulls == (mesh,)
         if seen:
@@ -76,7 +76,7 @@ class MjcfGeomWriter:
         return bool(hulls)
 
     def _hulls(self, geometry: Geometry, mesh: Mesh) -> tuple[Mesh, ...]:
-        """Return the meshes whose convex hulls replace a mesh in collisions."""
+        """Return meshes whose convex hulls represent a mesh in collisions; empty, with a warning, if it has none."""
         form = collision_form(mesh)
         if form == "visual":
             message = "the mesh is flat and has no convex hull; it is drawn and does not collide"

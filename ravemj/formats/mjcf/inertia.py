@@ -13,7 +13,7 @@ SMALLEST = 1e-10
 
 
 _ROUNDING = 1e-11
-"""Relative margin to the triangle inequality of moments, since MuJoCo recomputes them from the tensor."""
+"""Relative margin to the triangle inequality of principal moments, since MuJoCo recomputes these from the tensor."""
 
 
 def is_rounding(legal: Inertial, given: Inertial) -> bool:
@@ -44,10 +44,10 @@ def legal_inertial(inertial: Inertial) -> Inertial:
 
 
 def _nearest(small: float, middle: float, large: float) -> Vec3:
-    """Return the nearest moments, in the least-squares sense, none of which exceeds the sum of the others.
+    """Project sorted principal moments of inertia onto those that satisfy the triangle inequality, by least squares.
 
-    They are the projection onto the plane on which the largest is this sum or, if that is infeasible, onto the edge
-    of the feasible cone, on which the smallest is 0 and the others are equal.
+    The projection is onto the plane on which the largest is the sum of the others or, if a moment becomes negative
+    there, onto the edge on which the smallest is 0 and the others are equal.
     """
     excess = (large - small - middle) / 3
     if excess <= 0:
@@ -58,7 +58,7 @@ def _nearest(small: float, middle: float, large: float) -> Vec3:
 
 
 def _is_legal_diagonal(inertial: Inertial) -> bool:
-    """Return True if mass and diagonal tensor are legal, which is the usual case and needs no numpy."""
+    """Return True if the tensor is diagonal, and mass and tensor are valid: the usual case, checked without numpy."""
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertial.inertia
     if xy or xz or yz or not SMALLEST <= inertial.mass < math.inf:
         return False

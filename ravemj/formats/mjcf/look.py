@@ -60,7 +60,7 @@ def _light_attributes(light: Light) -> dict[str, Attribute]:
 
 
 def _first_rotation(view: View) -> Floats:
-    """Return ``R_world_camera`` of the first camera."""
+    """Return ``R_world_camera`` of a view; if it has no camera, the default of pictures."""
     camera = view.T_world_camera
     return first_rotation() if camera is None else np.array(rows_from_wxyz(camera.wxyz))
 

@@ -31,7 +31,7 @@ class Merging:
 
     @cached_property
     def _merged(self) -> dict[int, tuple[int, Pose]]:
-        """For each merged link, the link into which it is merged, and its pose there."""
+        """For each merged link, the link into which it is merged, and its pose in that link."""
         merged: dict[int, tuple[int, Pose]] = {}
         pending = [link for link in range(len(self._body.links)) if link not in self.placing] if self._merges else []
         while pending:
@@ -67,7 +67,7 @@ class Merging:
         return own if T_body_parent is UNMOVED else T_body_parent @ own
 
     def _own_pose(self, link: int) -> Pose:
-        """Return the pose of a link in its parent link, or in the world."""
+        """Return the pose of a link in its parent link, or in the world if it has none."""
         body = self._body
         if link not in self.placing:
             return body.links[link].T_world_link

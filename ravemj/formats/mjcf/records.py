@@ -37,7 +37,7 @@ _KINDS: dict[str, type] = {
         *(type(row.device) for row in scene.SENSOR_KINDS.values()),
     )
 }
-"""Classes of polymorphic fields, by name."""
+"""Shape and sensor classes by name. The JSON contains the name, since a field may hold any of them."""
 
 _LEFT_OUT = {"source", "expression", "render_file", "collision_file"}
 
@@ -130,7 +130,7 @@ UNKNOWN = scene.Inertial(0.0, (0.0, 0.0, 0.0), ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
 
 
 def _without_inertial(link: scene.Link) -> scene.Link:
-    """Return a link without mass properties that the MJCF contains unchanged."""
+    """Return a link without its mass properties if the MJCF contains them exactly, else the link unchanged."""
     own = link.inertial
     com = attribute_text(own.com)
     is_plain = legal_inertial(own) is own and own.axes is None and not own.undefined and tidy_vector(com) == com
@@ -142,7 +142,7 @@ class _RecordWriter:
         self._mesh_name = mesh_name
 
     def encode(self, value: object) -> object:
-        """Convert a value to JSON."""
+        """Convert a record, pose, mesh, container or plain value to JSON types."""
         if isinstance(value, scene.Mesh):
             name = self._mesh_name(value)
             return name or {"vertices": value.vertices.tolist(), "triangles": value.triangles.tolist()}
@@ -169,11 +169,7 @@ class _RecordReader:
         self._source = source
 
     def decode(self, kind: object, value: object) -> object:
-        """Convert JSON to a value of a type.
-
-        Raises:
-            ValueError: it is of another type.
-        """
+        """Convert JSON types to a value of the type ``kind``; raise ValueError if ``value`` does not fit."""
         if kind is scene.Mesh:
             return self._mesh(value)
         if kind is Pose:
@@ -184,7 +180,7 @@ class _RecordReader:
         return self._composed(kind, value)
 
     def _composed(self, kind: object, value: object) -> object:
-        """Convert JSON to a tuple, a union type, or a plain value."""
+        """Convert JSON types to a tuple, union, literal or plain value."""
         origin, arguments = typing.get_origin(kind), typing.get_args(kind)
         if origin is types.UnionType or origin is typing.Union:
             return self._any_of(arguments, value)
@@ -241,7 +237,6 @@ class _RecordReader:
 
 @cache
 def _hints(kind: type) -> Mapping[str, object]:
-    """Return the types of the fields of a class."""
     return typing.get_type_hints(kind, {**vars(typing), "Expression": Expression})
 
 

@@ -10,7 +10,7 @@ _NAMED = re.compile(r'\s*<([\w]+) (?:.*? )?name="([^"]*)"')
 _SECTION = re.compile(r"  <(\w+)>$")
 _KINDS = {"freejoint": "joint"}
 _OF_SECTION = {"equality", "tendon", "actuator", "sensor", "contact", "deformable", "keyframe", "custom"}
-"""Sections whose elements share one namespace, regardless of their tags."""
+"""Sections in which all elements share one namespace, whatever their tags."""
 
 
 class MjcfSections:

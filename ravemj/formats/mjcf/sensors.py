@@ -10,7 +10,7 @@ from ravemj.model.scene import AttachedSensor, ForceTorque, Imu, Intrinsics, Joi
 
 _IMU = ("accelerometer", "gyro")
 _BACK: Pose = Pose((0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0))
-"""MuJoCo's cameras look along -z with y up, OpenRAVE's along z with y down."""
+"""Half turn about x: MuJoCo's cameras look along -z with y up, OpenRAVE's along z with y down."""
 
 
 class SensorWriter:
@@ -69,7 +69,7 @@ class SensorWriter:
             self.lines.element(kind, None, name=self._free(f"{site}/{kind}"), site=site)
 
     def _free(self, name: str) -> str:
-        """Return a name that is unique among the written sensors, sites and cameras."""
+        """Reserve and return a name that is unique among the written sensors, sites and cameras."""
         unique, number = name, 1
         while unique in self._taken:
             number += 1
@@ -79,7 +79,7 @@ class SensorWriter:
 
 
 def _lens(camera: Intrinsics) -> dict[str, Attribute]:
-    """Return the field of view and the resolution of a camera."""
+    """Return a camera's field of view and resolution as MJCF attributes; empty if its intrinsics are not positive."""
     if not (camera.fy > 0 and camera.height > 0 and camera.width > 0):
         return {}
     angle = math.degrees(2 * math.atan(camera.height / 2 / camera.fy))

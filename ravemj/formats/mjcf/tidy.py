@@ -6,7 +6,7 @@ import re
 
 _VECTOR = re.compile(r'(?<= )(pos|quat|axis|dir|size|gravity|rgba)="([^"]*\d{9}[^"]*)"')  # with a long number in it
 _NOISE = 8
-"""Maximum change of a number, in units in the last place of the vector's largest number."""
+"""Maximum rounding of a vector's numbers, in units in the last place of the largest one."""
 
 
 def tidy(line: str) -> str:

@@ -15,7 +15,7 @@ from ravemj.model.scene import Axis
 
 @dataclass(slots=True)
 class _Data:
-    """Numbers by tag."""
+    """Reading state of an ``<actuator>``: numbers by tag, and points of its torque curve."""
 
     context: Context
     numbers: dict[str, float] = field(default_factory=dict[str, float])

@@ -20,12 +20,12 @@ from ravemj.formats.parameters import with_parameter
 from ravemj.model.scene import Parameters
 
 _MOST_ABOVE = 4
-"""Number of parent folders of a file that are searched for its references; repositories are not nested deeper."""
+"""Number of parent folders that are searched for a referenced file; repositories are not nested deeper."""
 FLAGS = {"enable", "circular", "render", "modifiable", "selfcollision", "skipgeometry"}
 """Attributes of any element that are true or false."""
 PARAMETER_ATTRIBUTES = {"name": "what scripts ask for", "type": "floats, integers or text"}
 _LONGEST_NAME = 80
-"""Length of names above which no similar known name is searched."""
+"""Maximum length of an unknown name for which a similar known name is suggested."""
 
 
 def uncomputable(element: Element) -> SourceError:

@@ -44,7 +44,7 @@ _KNOWN_CLASSES = {
     "basemanipulation", "taskmanipulation", "taskcaging", "visualfeedback", "logging", "ikfast", "grasper",
     "birrt", "basicrrt", "rastar", "workspacetrajectorytracker", "linearsmoother", "parabolicsmoother",
 }  # fmt: skip
-"""Interface classes other than bodies that every OpenRAVE installation has."""
+"""Plugin classes, other than bodies, that every OpenRAVE installation has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,11 +119,7 @@ class _FileContents:
         self.renames = False
 
     def read(self, root: Element) -> None:
-        """Read a root element.
-
-        Raises:
-            SourceError: it belongs to another format.
-        """
+        """Read a root element, such as ``<Environment>``; raise if it belongs to another format."""
         readers = {"robot": self.read_body, "kinbody": self.read_body, "sensor": self.read_sensor}
         check_robot(root)
         if is_urdf(root):
@@ -146,7 +142,7 @@ class _FileContents:
             )
 
     def read_environment(self, element: Element) -> None:
-        """Read an ``<Environment>``: first its file, then its children."""
+        """Read an ``<Environment>``: first the file that it includes, then its children."""
         self.context.check_attributes(element, ENVIRONMENT_ATTRIBUTES, {})
         root = self.context.include(element)
         if root is not None:
@@ -161,7 +157,6 @@ class _FileContents:
                 self.read_environment(child)
 
     def read_body(self, element: Element) -> None:
-        """Read a body and append it to the bodies."""
         try:
             body, refusal = read_body(element, self.context)
         except ArithmeticError as error:
@@ -172,7 +167,7 @@ class _FileContents:
             raise refusal
 
     def read_urdf(self, root: Element) -> None:
-        """Read a URDF; its body may get another name in the environment."""
+        """Read the body of a URDF; allow renaming it if the environment already has its name."""
         from ravemj.formats.urdf.robot import read_robot, settle  # noqa: PLC0415 - most models are none
 
         self.renames = True
@@ -186,7 +181,7 @@ class _FileContents:
             raise body.refusal
 
     def read_sensor(self, element: Element) -> None:
-        """Read a sensor without a robot."""
+        """Read a sensor that is not attached to a robot."""
         sensor = read_sensor(element, self.context)
         if sensor is not None:
             self._take_name("sensor", sensor.name, element)
@@ -200,8 +195,6 @@ class _FileContents:
 
 
 class _EnvironmentScope:
-    """An open ``<Environment>``."""
-
     def __init__(self, document: _FileContents) -> None:
         self.document = document
         self.view = View()
@@ -227,7 +220,7 @@ class _EnvironmentScope:
         self.view = replace(self.view, T_world_camera=camera)
 
     def read_camera_rotation(self, element: Element) -> None:
-        """Read an axis and an angle [deg]; it replaces an earlier rotation."""
+        """Set the camera's orientation from an axis and an angle [deg]."""
         camera = self._camera()._replace(wxyz=axis_angle(element, self._diagnostics))
         self.view = replace(self.view, T_world_camera=camera)
 
@@ -236,12 +229,12 @@ class _EnvironmentScope:
         self.view = replace(self.view, T_world_camera=camera)
 
     def read_old_camera_rotation(self, element: Element) -> None:
-        """Read the deprecated rotation, which is applied after a half turn about x."""
+        """Set the camera's orientation from the deprecated tag: axis and angle, after a half turn about x."""
         turned = multiply(axis_angle(element, self._diagnostics), _HALF_TURN_X)
         self.view = replace(self.view, T_world_camera=self._camera()._replace(wxyz=turned))
 
     def read_physics(self, element: Element) -> None:
-        """Read the gravity of a physics engine; ODE's default is none."""
+        """Read the gravity of a physics engine; for ODE it is zero by default."""
         self.document.context.check_attributes(element, PHYSICS_ATTRIBUTES, {})
         kind = element.attributes.get("type", "").lower()
         if kind not in {"ode", "bullet", "genericphysicsengine", ""}:

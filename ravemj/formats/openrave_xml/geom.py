@@ -56,7 +56,7 @@ class GeometryScope(NamedTuple):
 
 @dataclass(slots=True)
 class _Geom(Placed):
-    """An open ``<Geom>``, with the properties read so far."""
+    """Reading state of a ``<Geom>``."""
 
     name: str = ""
     vectors: dict[str, Vec3] = field(default_factory=lambda: {})
@@ -77,11 +77,11 @@ class _Geom(Placed):
         self.vectors["half_extents"] = scale(self.vectors["half_extents"], 0.5)
 
     def read_number(self, element: Element) -> None:
-        """Read a size with the same name as its tag."""
+        """Store a scalar size under the name of its tag."""
         self.numbers[element.tag] = number(element, self.context.diagnostics, self.numbers.get(element.tag, 0.0))
 
     def read_vector(self, element: Element) -> None:
-        """Read a three-dimensional size with the same name as its tag."""
+        """Store a three-dimensional size under the name of its tag."""
         self.vectors[element.tag] = vector(element, self.context.diagnostics, self.vectors.get(element.tag, ZERO))
 
     def read_cross_section(self, element: Element) -> None:
@@ -106,7 +106,7 @@ class _Geom(Placed):
         self.render = self._first(self.render, element)
 
     def _first(self, before: MeshFile | None, element: Element) -> MeshFile:
-        """Return the previous file if any, else the file that an element names."""
+        """Return the first file of the geom: ``before`` (with a warning), or else the file that the element names."""
         self.context.check_attributes(element, {} if element.tag == "data" else MESH_ATTRIBUTES, {})
         if before is None or not before.name:
             return _mesh_file(element, self.context.diagnostics)
@@ -245,7 +245,7 @@ def _geometry(
 
 
 def _surfaces(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> tuple[Surface, ...] | None:
-    """Return the display surfaces of a render file; None if it has none."""
+    """Return the display surfaces in a render file; None if the file has no parts."""
     parts = _parts(geom, file, element, scope)
     if not parts:
         return None
@@ -260,14 +260,14 @@ def _surfaces(geom: _Geom, file: MeshFile | None, element: Element, scope: Geome
 
 
 def _parts(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> tuple[MeshPart, ...]:
-    """Return the parts of a mesh file, with the file's own scale."""
+    """Return the parts of a mesh file, scaled as its element says; empty if there is no file."""
     if file is None or not file.name:
         return ()
     return geom.context.mesh(file.name, element.source, *_folders(element, scope), scale=file.scale)
 
 
 def _found(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> MeshFile | None:
-    """Return a mesh file with its path; None if it has no parts."""
+    """Return a mesh file with its full path; None if the file has no parts."""
     if file is None or not _parts(geom, file, element, scope):
         return None
     return file._replace(name=geom.context.find(file.name, element.source, *_folders(element, scope)) or file.name)
@@ -280,7 +280,7 @@ def _folders(element: Element, scope: GeometryScope) -> list[str]:
 
 
 def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
-    """Scale a mesh in the axes of its link."""
+    """Scale a mesh by the scope's factors along the axes of the link."""
     if scope.scale == (1.0, 1.0, 1.0):
         return mesh
     R_link_geometry: Floats = np.array(rows_from_wxyz(geom.placement.pose.wxyz))
@@ -289,7 +289,7 @@ def _scaled(mesh: Mesh, geom: _Geom, scope: GeometryScope) -> Mesh:
 
 
 def _mesh_file(element: Element, diagnostics: Diagnostics) -> MeshFile:
-    """Read ``file [sx [sy [sz]]]``: one number is a uniform scale, a missing sz is sx."""
+    """Read ``file [sx [sy [sz]]]``: a single number scales all axes, a missing sz equals sx."""
     name = next(iter(words(element.text)), "")
     numbers = element.text[element.text.find(name) + len(name) :]
     if element.tag != "data":

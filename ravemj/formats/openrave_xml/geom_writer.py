@@ -61,7 +61,7 @@ class GeomWriter:
             self._out.element("transparency", geometry.transparency)
 
     def _write_file(self, tag: str, mesh: Mesh) -> None:
-        """Write the name of a mesh file, unless there are no triangles."""
+        """Write the name of a mesh's file under a tag, and add the file; do nothing if the mesh has no triangles."""
         if mesh not in self._names:
             self._names[mesh] = self._added(mesh)
         name = self._names[mesh]
@@ -69,7 +69,7 @@ class GeomWriter:
             self._out.element(tag, f"{FOLDER}/{name}")
 
     def _added(self, mesh: Mesh) -> str | None:
-        """Add the file of a mesh, as readers will reproduce it; return its name."""
+        """Add a mesh file, with vertices merged as by readers; return its name, or None if it has no triangles."""
         stored = weld(without_degenerate(corners_of(mesh)))
         if not len(stored.triangles):
             return None

@@ -37,7 +37,7 @@ def needs_values(body: KinBody) -> bool:
 
 
 def _initial(body: KinBody, index: int, axis: Axis) -> float:
-    """Return the value at the written poses; a joint without DOFs and mimic equation keeps its value."""
+    """Return an axis's value at the written link poses; a joint with neither DOFs nor an equation keeps its value."""
     return axis.value if rests(body, index) else axis.reference
 
 
@@ -90,7 +90,7 @@ class JointWriter:
             write_parameters(self._out, joint.parameters)
 
     def _write_frame(self, body: KinBody, joint: Joint) -> None:
-        """Write anchor and directions, in the frame of the parent; OpenRAVE anchors a slider at the frame's origin."""
+        """Write the anchor and axes of a joint in its parent's frame; a slider's in the frame of `_slider_frame`."""
         frame = self._slider_frame(joint) if joint.kind == "slider" else joint.parent
         self._out.element("offsetfrom", self._names.links[frame])
         turns_with_child = joint.static and len(body.joints) > 0  # OpenRAVE moves the frame of a weld to its child
@@ -107,13 +107,13 @@ class JointWriter:
                 self._out.element(tag, settled.direction(in_frame))
 
     def _check_weld(self, joint: Joint) -> None:
-        """Warn if a weld's axis is not z of its child, the axis that OpenRAVE assigns to welds in XML files."""
+        """Warn if a weld's axis is not the child's z axis, which OpenRAVE assigns to welds in XML files."""
         if not turns_about_z_of_child(joint):
             message = f"the axis of the weld '{joint.name}' is left out: in OpenRAVE XML it is the z axis of its child"
             self._diagnostics.warn("not-written", message, joint.source)
 
     def _slider_frame(self, joint: Joint) -> int:
-        """Return the link whose origin is the anchor of a slider; by default its parent."""
+        """Return the link whose origin is a slider's anchor: the child if only its origin is there, else the parent."""
         parent, child = self._poses[joint.parent], self._poses[joint.child]
         anchor = parent.apply(joint.anchor)
         near = [math.dist(link.position, anchor) < _NEAR for link in (parent, child)]

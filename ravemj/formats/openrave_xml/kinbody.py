@@ -36,11 +36,7 @@ from ravemj.model.scene import KinBody
 
 
 class _Scope(Placed):
-    """An open ``<Robot>`` or ``<KinBody>``.
-
-    Attributes:
-        depth: 0 for the outermost element.
-    """
+    """Reading state of a ``<Robot>`` or ``<KinBody>``; ``depth`` is 0 for the outermost one."""
 
     def __init__(self, body: BodyBuilder, context: Context, scale: Vec3, depth: int, *, skip_geometry: bool) -> None:
         super().__init__(context, ChildTransform(scale=scale))
@@ -54,7 +50,7 @@ class _Scope(Placed):
         self.transparency: float | None = None
 
     def read(self, element: Element) -> None:
-        """Read an element: its file, its children, and the effects of its end tag."""
+        """Read an element: its included file, then its children, then the attributes that apply at its end."""
         first_link = len(self.body.links)
         if "file" in element.attributes:
             self._include(element)
@@ -78,7 +74,7 @@ class _Scope(Placed):
                 link.pose = T_outer_scope @ link.pose
 
     def _include(self, element: Element) -> None:
-        """Read the file of an element like a nested element of the same kind."""
+        """Read the included file of an element as if its root were a nested element."""
         name = element.attributes["file"]
         if is_mesh(name):
             path = self.context.find(name, element.source)
@@ -112,7 +108,7 @@ class _Scope(Placed):
             self.body.set_parts(before)
 
     def _join_links(self, element: Element) -> None:
-        """Read the flag whether joined links are adjacent; the KinBody that opens last has precedence.
+        """Read the KinBody attribute ``makeJoinedLinksAdjacent``; the element that opens last has precedence.
 
         An element that includes a file opens after the root of the file. See gap-17, gap-18 and gap-19.
         """
@@ -182,7 +178,7 @@ class _Scope(Placed):
         read_attached_sensor(self.body, element, self.context)
 
     def read_controller(self, element: Element) -> None:
-        """Report a ``<Controller>``; after joints, it is an error in OpenRAVE (robot-24)."""
+        """Warn that a ``<Controller>`` is ignored; after joints, it is an error as in OpenRAVE (robot-24)."""
         if self.body.joints:
             hint = "leave it out: robots have a controller without asking"
             raise SourceError("OpenRAVE cannot attach a controller while it reads a robot", element.source, hint)
@@ -266,7 +262,7 @@ def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError 
 
 
 def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
-    """Accept the body types that every OpenRAVE has as plain bodies, and report others."""
+    """Report a ``type`` other than that of a plain body; with any type, discard the included file as OpenRAVE does."""
     kind = element.attributes.get("type")
     if kind is None:
         return

@@ -17,7 +17,7 @@ from ravemj.model.scene import OWN_SHAPES
 
 
 class _LinkScope(Placed):
-    """An open ``<Body>``."""
+    """Reading state of a ``<Body>``."""
 
     def __init__(
         self,
@@ -54,7 +54,7 @@ class _LinkScope(Placed):
         self.context.walk(element, LINK_TAGS, {}, self)
 
     def _include(self, element: Element) -> None:
-        """Read the file that ``<Body file="…">`` names, as if its content stood inside of the element."""
+        """Read the file that ``<Body file="…">`` names, as if its content were in the element."""
         root = self.context.include(element)
         if root is not None and root.tag == "body":
             self.read_nested(root)
@@ -64,12 +64,12 @@ class _LinkScope(Placed):
 
     @property
     def pose(self) -> Pose:
-        """The pose defined by the elements read so far."""
+        """Pose of the link as defined by the elements read so far."""
         pose = self.placement.pose
         return pose if self.T_scope_offset is None else self.T_scope_offset @ pose
 
     def read_nested(self, element: Element) -> None:
-        """Read a nested ``<Body>``: it extends the same link, and its transform moves all shapes of the link so far."""
+        """Read a nested ``<Body>``: it extends this link, and its pose displaces all shapes read so far."""
         older = len(self.link.geometries)
         geometry_scope = _scaled(self.geometry_scope, element, self.context.diagnostics)
         inner = _LinkScope(
@@ -183,7 +183,7 @@ def _scaled(scope: GeometryScope, element: Element, diagnostics: Diagnostics) ->
 
 
 def _check_density(link: LinkBuilder, rule: MassRule | None, element: Element, context: Context) -> None:
-    """Warn of a density without effect because no shape of the link has a volume."""
+    """Warn if a density has no effect because no shape of the link has a volume."""
     fills = rule is not None and rule.kind == "mimicgeom" and not rule.by_total and rule.density > 0
     if fills and link.geometries and not link.inertial.mass:
         message = f"link '{link.name}' weighs nothing: no shape of it has a volume that its density could fill"

@@ -52,19 +52,19 @@ class MassRule:
 
 @dataclass(slots=True)
 class _Mass:
-    """An open ``<Mass>`` of a Body."""
+    """Reading state of a ``<Mass>`` in a ``<Body>``."""
 
     diagnostics: Diagnostics
     rule: MassRule
     scale: Vec3
 
     def density(self, element: Element) -> None:
-        """Read a ``<density>``; it has no effect on a custom mass, but on the next Mass (gap-21)."""
+        """Read a ``<density>``; it does not affect a custom mass, but does affect the next Mass (gap-21)."""
         self.rule.density = single(number(element, self.diagnostics, self.rule.density))
         self.rule.by_total = False
 
     def total(self, element: Element) -> None:
-        """Read a total mass: ``<total>``, or in double precision ``<precisetotal>``."""
+        """Read a total mass: ``<total>`` in single, ``<precisetotal>`` in double precision."""
         rule = self.rule
         total = number(element, self.diagnostics, rule.custom_mass if rule.kind == "custom" else rule.total)
         rule.total = rule.custom_mass = single(total) if element.tag == "total" else total
@@ -90,7 +90,7 @@ class _Mass:
         self.rule.axes = normalize(ROTATIONS["quat"](element, self.diagnostics))
 
     def extents(self, element: Element) -> None:
-        """Accept ``<extents>``, which OpenRAVE does not read in a Body (mass-11)."""
+        """Accept and ignore ``<extents>``, as OpenRAVE does in a Body (mass-11)."""
 
 
 MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box, custom"}
@@ -201,10 +201,10 @@ def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Iner
 
 
 def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
-    """Combine the solids of all shapes by the parallel axis theorem.
+    """Return the combined mass properties of all shapes, by the parallel axis theorem.
 
-    With a total mass, OpenRAVE scales the masses of the parts but not their inertias (mass-06). It divides a total
-    by 0 if there are shapes without any volume (random-xml-132), and not if there are no shapes (gap-25).
+    With a total mass, OpenRAVE scales the masses of the shapes but not their inertias (mass-06). It divides the total
+    by 0 if all shapes lack a volume (random-xml-132), but not if there are no shapes (gap-25).
     """
     density = TOTAL_DENSITY if rule.by_total else rule.density
     solids = [geometry.shape.mass_moments(density) for geometry in geometries]
@@ -229,7 +229,7 @@ def _diagonal(moments: Vec3) -> Rows:
 
 
 def _rotated(moments: Vec3, wxyz: Wxyz) -> Rows:
-    """Return R diag(moments) R^T."""
+    """Return the inertia tensor with these principal moments along the axes of the orientation ``wxyz``."""
     if moments[0] == moments[1] == moments[2] or not any(wxyz[1:]):
         return _diagonal(moments)
     rows = rows_from_wxyz(wxyz)
@@ -243,7 +243,7 @@ def _rotated(moments: Vec3, wxyz: Wxyz) -> Rows:
 
 
 def _point_inertia(mass: float, arm: Vec3) -> Rows:
-    """Return the inertia of a point mass at a displacement."""
+    """Return the inertia tensor about the origin of a point mass at ``arm``."""
     x, y, z = arm
     square = dot(arm, arm)
     return (

@@ -95,7 +95,7 @@ def uniform(scale: Vec3, source: Source, context: Context) -> float:
 
 
 def _join(body: BodyBuilder, other: BodyBuilder) -> None:
-    """Merge one body into another; links with equal names are merged, and the first such link fixes the pose."""
+    """Move ``other`` so that its first link, if ``body`` has it, coincides; then merge equally named links."""
     places = [body.find_link(link.name) for link in other.links]
     T_body_other = Pose()
     if places[0] is not None:

@@ -21,8 +21,6 @@ def named_link(body: BodyBuilder, element: Element, owner: str, context: Context
 
 
 class _ManipulatorScope(Placed):
-    """An open ``<Manipulator>``."""
-
     def __init__(self, body: BodyBuilder, built: ManipulatorBuilder, context: Context) -> None:
         super().__init__(context)
         self.body = body
@@ -86,7 +84,7 @@ def read_manipulator(body: BodyBuilder, element: Element, context: Context) -> N
 
 
 class _SensorScope(Placed):
-    """An open ``<AttachedSensor>``."""
+    """Reading state of an ``<AttachedSensor>``."""
 
     def __init__(self, body: BodyBuilder, context: Context) -> None:
         super().__init__(context)

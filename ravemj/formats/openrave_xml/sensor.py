@@ -43,8 +43,6 @@ class SensorElement(NamedTuple):
 
 
 class _SensorScope(Placed):
-    """An open ``<Sensor>``."""
-
     def __init__(self, context: Context, device: Device) -> None:
         super().__init__(context)
         self.device = device
@@ -52,7 +50,7 @@ class _SensorScope(Placed):
         self.color = SENSOR_COLOR
 
     def describe(self, element: Element, tag: SensorTag) -> None:
-        """Read an element described in the tables shared with COLLADA."""
+        """Read a property of the sensor; ``tag`` is from the tables shared with COLLADA."""
         if is_text(self.device, tag):
             self.device = described(self.device, tag, " ".join(element.text.split()))
         elif tag.numbers:
@@ -134,7 +132,7 @@ def read_sensor(element: Element, context: Context) -> AttachedSensor | None:
 def _read(
     element: Element, context: Context, placement: Mapping[str, Tag[_SensorScope]], ignored: Mapping[str, str]
 ) -> SensorElement:
-    """Read a ``<Sensor>``; if it has a ``file`` and no type, read the sensor in it, at the pose of the element."""
+    """Read a ``<Sensor>``; without a ``type``, read its ``file`` and apply the element's pose and name."""
     context.check_attributes(element, DEVICE_ATTRIBUTES, DEVICE_IGNORED_ATTRIBUTES)
     root = context.include(element)
     from_file = SensorElement() if root is None or root.tag != "sensor" else _read(root, context, placement, ignored)

@@ -118,12 +118,10 @@ _HINTS = {
     expat.errors.XML_ERROR_INCORRECT_ENCODING: "leave the encoding out of its first line",
     expat.errors.XML_ERROR_MISPLACED_XML_PI: "let the file begin with <?xml",
 }
-"""Hints for expat's syntax errors; for others, the open element is more helpful."""
+"""Hints for expat's syntax errors. For other errors, naming the open element helps more."""
 
 
 class _TreeBuilder:
-    """Builds the tree from expat's events."""
-
     def __init__(self, path: str, included_from: Source | None) -> None:
         self.root: Element | None = None
         self._path = path
@@ -143,7 +141,6 @@ class _TreeBuilder:
         self._expat.EntityDeclHandler = self._declared
 
     def parse(self, content: bytes) -> SourceError | None:
-        """Parse the content; return the syntax error, if any."""
         self._content = content
         try:
             self._expat.Parse(content, True)
@@ -156,7 +153,7 @@ class _TreeBuilder:
         return None
 
     def _explained(self, error: expat.ExpatError) -> SourceError:
-        """Return an explained syntax error. An invalid token may be in another encoding, or not XML at all."""
+        """Return a syntax error with an explanation: another encoding, no XML at all, or a hint from `_HINTS`."""
         source = Source(self._path, error.lineno, self._included_from)
         if not self._content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):  # half of whose bytes are 0
             if b"\0" in self._content:

@@ -88,7 +88,6 @@ class _Writer:
             self.out.element("camrotationaxis", settled.axis_angle(camera.wxyz))
 
     def write_body(self, body: KinBody) -> None:
-        """Write a robot or another body."""
         _check_name("body", body.name)
         joined = None if body.joined_links_adjacent else 0
         body = writable(body, self.diagnostics)
@@ -111,7 +110,7 @@ class _Writer:
             self._write_state(body, names)
 
     def _write_parts(self, body: KinBody, names: PartNames) -> None:
-        """Write links, joints and pairs of links."""
+        """Write links, joints and adjacent link pairs."""
         poses = [settled.pose(pose) for pose in listed_poses(body)]
         for link, name, pose in zip(body.links, names.links, poses, strict=True):
             self._write_link(link, name, pose)
@@ -177,7 +176,7 @@ class _Writer:
             write_pose(self.out, settled.pose(manipulator.T_effector_tool))
 
     def write_sensor(self, sensor: AttachedSensor) -> None:
-        """Write a sensor without a robot."""
+        """Write a sensor that is not attached to a robot."""
         _check_name("sensor", sensor.name)
         kind = None if sensor.type is None else sensor_kind(sensor.type)
         if kind is None:

@@ -41,7 +41,7 @@ def guess(
 
 
 def _arms(tools: list[str], tree: RobotTree) -> list[ManipulatorBuilder]:
-    """Return one arm for each joint that is the last joint before a tool, in the order of the file."""
+    """Return one arm for each last joint before a tool link, in the order of the effectors in the file."""
     arms: dict[str, ManipulatorBuilder] = {}  # by the last joint
     dofs = {link: _dofs(link, tree) for link in tools}
     for link in tools:
@@ -55,7 +55,7 @@ def _arms(tools: list[str], tree: RobotTree) -> list[ManipulatorBuilder]:
 
 
 def _rank(link: str) -> int | None:
-    """Return the index of the tool word in a link's name; None if it has none."""
+    """Return the index in `_TOOLS` of the first tool word in a link's name; None if there is none."""
     words = f" {' '.join(_WORDS.findall(link)).lower()} "
     return next((rank for rank, tool in enumerate(_TOOLS) if f" {tool} " in words), None)
 
@@ -67,7 +67,7 @@ def _longest(tree: RobotTree) -> list[str]:
 
 
 def _dofs(link: str, tree: RobotTree) -> list[UrdfJoint]:
-    """Return the joints with a DOF between the base of an arm and its tool."""
+    """Return the movable joints from the base of an arm to the link ``link``."""
     return [joint for joint in tree.path(link, base_of(tree, link)) or [] if tree.is_dof(joint)]
 
 
@@ -85,6 +85,6 @@ def base_of(tree: RobotTree, link: str) -> str:
 
 
 def _is_beyond(link: str, dofs: dict[str, list[UrdfJoint]], tree: RobotTree) -> bool:
-    """Return whether a link is below another tool that an arm moves, so that gripper joints move it."""
+    """Return whether a link is below the tool of another arm, so that joints of its gripper move the link."""
     above = {joint.parent for joint in tree.path(link) or []} & dofs.keys()
     return any(len(dofs[other]) >= _LEAST_DOFS and dofs[other][-1] is not dofs[link][-1] for other in above)

@@ -32,7 +32,7 @@ _REFUSED = {"planar": "write two prismatic joints and a continuous one, with lin
 _KNOWN = ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration", "safety_controller")
 _FIRST_AXIS: Vec3 = (1.0, 0.0, 0.0)
 _WITHOUT_LIMIT = {"revolute": math.pi, "prismatic": 1.0}
-"""Limits of joints without ``<limit>`` [rad, m]; the first is or_urdf's."""
+"""Upper limits [rad or m] by type of joints without ``<limit>``; the revolute one is or_urdf's."""
 
 _SLOW = 1e-4  # how far the length of an axis may be from 1 without a warning
 _ROUNDING = 1e-13
@@ -127,7 +127,7 @@ def _direction(joint: UrdfJoint, context: Context) -> Vec3:
 
 
 def _limits(joint: UrdfJoint, context: Context) -> dict[str, float]:
-    """Return the limits of a joint, as the fields of ``Axis``."""
+    """Return the position, velocity and effort limits of a joint, as fields of ``Axis``."""
     element, diagnostics = only(joint.element, "limit", context), context.diagnostics
     turns = joint.type == "continuous"
     if element is None:
@@ -155,7 +155,7 @@ def _limits(joint: UrdfJoint, context: Context) -> dict[str, float]:
 
 
 def _rates(joint: UrdfJoint, element: Element, context: Context) -> dict[str, float]:
-    """Return the limits of effort, velocity, acceleration and jerk."""
+    """Return the effort, velocity, acceleration and jerk limits in a ``<limit>``, as fields of ``Axis``."""
     rates = {"max_torque": abs(number_of(element, "effort", 0.0))}
     velocity = abs(number_of(element, "velocity", _DEFAULTS.max_velocity))
     if not velocity:
@@ -187,7 +187,7 @@ def follow(joints: Mapping[str, UrdfJoint], built: Mapping[str, JointBuilder], c
 
 
 def _with_room(axis: Axis, leader: Axis, factor: float, offset: float) -> Axis:
-    """Return the axis of a mimic joint; if its range is empty, with the range that follows from its leader."""
+    """Return a mimic joint's axis; an empty range is replaced by the range that follows from the leader's."""
     if axis.circular or axis.lower < axis.upper:
         return axis
     lower, upper = sorted((leader.lower * factor + offset, leader.upper * factor + offset))

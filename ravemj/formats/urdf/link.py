@@ -44,7 +44,7 @@ def read_groups(element: Element, shapes: UrdfShapeReader) -> dict[str, list[Geo
 
 
 def _inertial(element: Element, context: Context) -> Inertial:
-    """Return the mass properties of a link; almost none if it has no ``<inertial>``."""
+    """Return the mass properties of a link; ``MASSLESS`` if it has no ``<inertial>``."""
     inertial = only(element, "inertial", context)
     if inertial is None:
         return MASSLESS
@@ -63,7 +63,7 @@ def _inertial(element: Element, context: Context) -> Inertial:
 
 
 def _turned(moments: list[float], wxyz: Wxyz) -> Rows:
-    """Return the tensor R I R^T in rotated axes, for moments xx xy xz yy yz zz."""
+    """Return the inertia tensor R I R^T; ``moments`` are xx, xy, xz, yy, yz, zz of I, ``wxyz`` is R."""
     xx, xy, xz, yy, yz, zz = moments
     tensor: Rows = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
     if wxyz == UNMOVED.wxyz:

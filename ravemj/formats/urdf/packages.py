@@ -67,7 +67,7 @@ class Packages:
         return self._first([os.path.join(folder, uri) for folder in (self._folder, *data_folders())])
 
     def _first(self, paths: list[str], searched: tuple[str, ...] = ()) -> ResolvedPath:
-        """Return the first path of a permitted, existing file."""
+        """Return the first path that is permitted and a file; if none is, the paths searched."""
         for path in paths:
             if self._access.permits(path) and os.path.isfile(path):
                 return ResolvedPath(os.path.normpath(path))
@@ -101,7 +101,7 @@ class Packages:
 
     @cached_property
     def _above(self) -> list[str]:
-        """The folder of the URDF and its parent folders, the nearest first."""
+        """The folder of the URDF and its permitted parent folders, the nearest first."""
         folders = [os.path.abspath(self._folder)]
         while len(folders) <= _MOST_ABOVE and os.path.dirname(folders[-1]) != folders[-1]:
             folders.append(os.path.dirname(folders[-1]))
@@ -109,7 +109,7 @@ class Packages:
 
     @cached_property
     def _manifests(self) -> dict[str, str]:
-        """For each folder above, the name in its ``package.xml``; empty if there is none."""
+        """Package name in the ``package.xml`` of each folder in `_above`; empty if there is none."""
         return {folder: _manifest_name(os.path.join(folder, "package.xml")) for folder in self._above}
 
     def _variable(self, name: str) -> list[str]:
@@ -132,7 +132,7 @@ def given_packages(text: str) -> dict[str, str]:
 
 
 def _below(entry: str, package: str) -> Iterator[str]:
-    """Yield possible folders of a package in an entry of a search path: the entry, and up to two levels below it."""
+    """Yield possible folders of a package below a search-path entry, which may itself be the package."""
     if os.path.basename(os.path.normpath(entry)) == package:
         yield entry
     yield os.path.join(entry, package)

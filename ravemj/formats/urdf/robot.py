@@ -73,7 +73,7 @@ def settle(body: BodyBuilder, context: Context) -> KinBody:
 
 
 def _name(root: Element, context: Context) -> str:
-    """Return the name of the robot as one word, as OpenRAVE requires."""
+    """Return the robot's name as one word, as OpenRAVE requires; by default the file's name."""
     name = root.attributes.get("name", "").strip()
     if not name:
         name = Path(root.source.file).stem
@@ -160,7 +160,7 @@ def _add_parts(
 
 
 def _add_groups(links: Mapping[str, LinkBuilder], elements: Mapping[str, Element], shapes: UrdfShapeReader) -> None:
-    """Add or_urdf's groups of shapes to all links, empty where a link has no shapes of the group."""
+    """Add or_urdf's geometry groups to all links; a group is empty if a link has no shapes for it."""
     groups = {name: read_groups(element, shapes) for name, element in elements.items()}
     for group in dict.fromkeys(group for own_groups in groups.values() for group in own_groups):
         for name, link in links.items():
@@ -175,7 +175,7 @@ def _packages(root: Element, given: Mapping[str, str]) -> dict[str, str]:
 
 
 def _add_srdf(body: BodyBuilder, tree: RobotTree, root: Element, context: Context, given: Mapping[str, str]) -> None:
-    """Add the data of the SRDF, or guessed manipulators if there is none."""
+    """Apply the SRDF to a body; if there is none, add guessed manipulators."""
     wanted, state, like = given.get("srdf", ""), given.get("state", ""), given.get("like", "")
     if like == OR_URDF and not wanted:
         wanted, body.is_robot = NO_SRDF, False
@@ -196,7 +196,7 @@ def _add_srdf(body: BodyBuilder, tree: RobotTree, root: Element, context: Contex
 
 
 def _srdf(wanted: str, root: Element, context: Context) -> Document | None:
-    """Return the SRDF that a caller names or passes as text, or the one beside the URDF; None if there is none."""
+    """Return the SRDF: ``wanted`` as a path or XML text, by default the file beside the URDF; None if there is none."""
     if wanted == NO_SRDF:
         return None
     budget = context.documents.budget
@@ -210,7 +210,7 @@ def _srdf(wanted: str, root: Element, context: Context) -> Document | None:
 
 
 def _srdf_beside(root: Element, context: Context) -> str | None:
-    """Return the path of the SRDF beside a URDF, or in the folder ``srdf`` beside the URDF's folder."""
+    """Return the path of the SRDF beside a URDF or in ``../srdf``; None if there is none."""
     folder, file = os.path.split(root.source.file)
     name = f"{file.partition('.')[0]}.srdf"
     for path in (os.path.join(folder, name), os.path.join(folder, os.pardir, "srdf", name)):

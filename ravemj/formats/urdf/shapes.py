@@ -151,7 +151,7 @@ class UrdfShapeReader:
         )
 
     def _material(self, element: Element) -> Material | None:
-        """Return the material of a ``<visual>``: its own colour, or that of the material that it names."""
+        """Return the material of a ``<visual>``, defined there or by name; None if it has none or it is unknown."""
         material = only(element, "material", self.context)
         if material is None:
             return None

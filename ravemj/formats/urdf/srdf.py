@@ -92,7 +92,7 @@ class _Srdf:
         self.context.diagnostics.warn(f"unknown-{what}", message, element.source, did_you_mean(name, [*known]))
 
     def _link(self, element: Element, name: str) -> str | None:
-        """Return the link named by an attribute, or None, with a diagnostic."""
+        """Return the link that an attribute of an element names; None, with a diagnostic, if it does not exist."""
         link = attribute(element, name)
         if link in self.tree.links:
             return link
@@ -102,7 +102,7 @@ class _Srdf:
     # Pairs of links
 
     def _add_pairs(self) -> None:
-        """Make links whose collisions are disabled adjacent."""
+        """Mark link pairs as adjacent if the SRDF disables their collisions."""
         names = {link.name: index for index, link in enumerate(self.body.links)}
         pairs = self._pairs("disable_collisions", ("link1", "link2"))
         silent = [
@@ -126,7 +126,7 @@ class _Srdf:
         return pairs
 
     def _add_spheres(self) -> None:
-        """Fill the groups ``spheres``; as in or_urdf, centres are in the frame of the first collision shape."""
+        """Fill the links' group ``spheres``; as in or_urdf, centres are in the frame of the first collision shape."""
         for element in children(self.root, "link_sphere_approximation"):
             name = self._link(element, "link")
             if name is None:
@@ -140,7 +140,7 @@ class _Srdf:
     # Groups
 
     def _group(self, name: str, opened: tuple[str, ...]) -> SrdfGroup:
-        """Return a group with the joints and links of all its elements; each link includes its parent joint."""
+        """Return a group with its subgroups; a listed link includes its parent joint. ``opened`` are outer groups."""
         if name in self.groups:
             return self.groups[name]
         element = self.elements[name]
@@ -193,7 +193,7 @@ class _Srdf:
     # Manipulators
 
     def _add_manipulators(self) -> None:
-        """Add a manipulator for each end effector, then one for each other group that is a serial chain."""
+        """Add a manipulator for each end effector, then one for each remaining group that is a serial chain."""
         arms: dict[str, ManipulatorBuilder] = {}
         used: set[str] = set()
         for element in children(self.root, "end_effector"):
@@ -220,10 +220,10 @@ class _Srdf:
         self.body.manipulators = list(arms.values())
 
     def _parent_group(self, element: Element, link: str, own: str) -> str | None:
-        """Return the group of the arm of an end effector.
+        """Return the name of the arm's group for the end effector at ``link`` with the group ``own``, or None.
 
-        It is the ``parent_group``, which or_urdf required. If this is missing, as in current files, it is the end
-        effector's group if that leads to its link, else the group with the longest chain that ends at the link.
+        It is the attribute ``parent_group``, which or_urdf required. If this is missing, as in current files, it is
+        ``own`` if its chain leads to the link, else the group with the longest chain that ends at the link.
         """
         given = element.attributes.get("parent_group", "")
         if given:
@@ -238,14 +238,14 @@ class _Srdf:
         return min(ending, key=lambda name: len(self.groups[name].joints), default=None)
 
     def _leads_to(self, group: SrdfGroup, link: str) -> bool:
-        """Return whether a group is a serial chain that ends at a link, up to fixed joints."""
+        """Return whether a group is a serial chain that ends at a link, apart from fixed joints in between."""
         ends = self._serial_ends(group)
         path = None if ends is None else self.tree.path(link, ends[0])
         dofs = [joint.name for joint in path or [] if self.tree.is_dof(joint)]
         return bool(dofs) and set(dofs) <= group.joints.keys()
 
     def _serial_ends(self, group: SrdfGroup) -> tuple[str, str] | None:
-        """Return first and last link of a group that is a serial chain; None if it is not, or all joints are fixed."""
+        """Return base and end link of a group; None if the group is no serial chain, or all its joints are fixed."""
         moving = [name for name in group.joints if self._is_dof(name)]
         if not moving:
             return None
@@ -258,7 +258,7 @@ class _Srdf:
         return None if base is None else (base, end)
 
     def _base(self, group: SrdfGroup, link: str) -> str | None:
-        """Return the base link of the chain that a group's joints form up to a link, or None."""
+        """Return the parent link of the group's first joint on the path to ``link``; None if there is no such joint."""
         path = self.tree.path(link) or []
         first = next((joint for joint in path if joint.name in group.joints), None)
         return None if first is None else first.parent
@@ -294,7 +294,7 @@ _PARTS = {"chain": _Srdf.add_chain, "joint": _Srdf.add_joint, "link": _Srdf.add_
 
 
 def _values(body: BodyBuilder, state: Mapping[str, float]) -> list[float]:
-    """Return the values of all DOFs: those of a state, and for other DOFs the value nearest to 0 within limits."""
+    """Return the values of all DOFs: from ``state``, and for other DOFs the value within limits nearest to 0."""
     axes = {joint.name: joint.axes[0] for joint in body.joints if joint.active}
     nearest = {name: 0.0 if axis.circular else min(max(axis.lower, 0.0), axis.upper) for name, axis in axes.items()}
     return [state.get(name, value) for name, value in nearest.items()]

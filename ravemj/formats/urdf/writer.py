@@ -51,7 +51,7 @@ class Losses:
 
 
 class _MimicRelation(NamedTuple):
-    """Mimic joint whose value is a multiple of another joint's value plus an offset."""
+    """Value of a mimic joint: the leader's value times ``multiplier`` plus ``offset``."""
 
     leader: str
     multiplier: float
@@ -81,7 +81,7 @@ def write(scene: Scene, diagnostics: Diagnostics) -> UrdfDocument:
 
 
 class _UrdfWriter:
-    """Writes links first, then joints in the order of ``Load``: moving joints, welds, mimic joints."""
+    """Writes links, then joints in the order that ``Load`` gives them: moving joints, welds, mimic joints."""
 
     def __init__(self, body: KinBody, losses: Losses) -> None:
         self.body = body
@@ -98,7 +98,7 @@ class _UrdfWriter:
         self._fixed_lines, self._follower_lines = XmlText(1), XmlText(1)
 
     def write(self) -> UrdfDocument:
-        """Return the robot as text."""
+        """Return URDF, SRDF and mesh files of the robot."""
         body, losses = self.body, self.losses
         self._note_losses()
         roots = [link for link in range(len(body.links)) if link not in self._merging.placing]
@@ -124,7 +124,7 @@ class _UrdfWriter:
         return UrdfDocument(document.document(), srdf, self._shapes.meshes)
 
     def _with_welds(self) -> KinBody:
-        """Return the body as represented in URDF: joints that do not move are welds, and joined links adjacent."""
+        """Return the body as URDF represents it: fixed joints become welds, joined links are adjacent."""
         joints = [
             joint if index in self._moving else replace(joint, axes=tuple(map(_without_room, joint.axes)))
             for index, joint in enumerate(self.body.all_joints)
@@ -164,7 +164,7 @@ class _UrdfWriter:
         return index < len(self.body.joints) or joint.equation is not None
 
     def _mimic(self, index: int, joint: Joint) -> _MimicRelation | None:
-        """Return the mimic relation of a joint, or None; a relation that URDF cannot represent is reported."""
+        """Return the mimic relation of a joint; None if it has none, or URDF cannot represent it, which is reported."""
         equation = joint.equation
         if equation is None:
             return None
@@ -216,7 +216,7 @@ class _UrdfWriter:
             out.element("inertia", ixx=xx, ixy=xy, ixz=xz, iyy=yy, iyz=yz, izz=zz)
 
     def _joint(self, index: int, joint: Joint) -> None:
-        """Write a joint, with massless links if it has several axes or its axis misses the child's origin."""
+        """Write a joint; add massless links if it has several axes or its axis misses the child's origin."""
         name, parent, child = self.joints[index], self.links[joint.parent], self.links[joint.child]
         if index not in self._moving:
             self._fixed(name, parent, child, self._merging.pose_in_parent(joint.child))
@@ -266,7 +266,7 @@ class _UrdfWriter:
                 out.element("mimic", joint=mimic.leader, multiplier=mimic.multiplier, offset=mimic.offset)
 
     def _tool(self, arm: Manipulator) -> Manipulator:
-        """Return a manipulator whose tool is the frame of its effector, which is a new link if necessary."""
+        """Return a manipulator whose tool frame is its effector's frame; add a link there if the frames differ."""
         if arm.effector is None or arm.T_effector_tool == UNMOVED:
             return arm
         name = f"{arm.name}_tool"
@@ -277,7 +277,7 @@ class _UrdfWriter:
 
 
 def _axes(joint: Joint) -> list[Axis]:
-    """Return the axes in the joint's parent at the value 0, from parent to child."""
+    """Return a joint's axes at the value 0 in the parent's frame, in the order from parent to child."""
     if joint.kind != "spherical" or not joint.is_ball:
         return [replace(joint.axes[0], direction=moving_direction(joint, 0)), *joint.axes[1:]]
     units: Sequence[Vec3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -293,7 +293,7 @@ def _without_room(axis: Axis) -> Axis:
 
 
 def _turns_at_origin(joint: Joint, zero: Pose) -> bool:
-    """Return whether the axis passes through the origin of the child at the value 0."""
+    """Return whether the joint's axis passes through the child's origin at the value 0; True for sliders."""
     if joint.slides():
         return True
     arm = add(zero.position, scale(joint.anchor, -1.0))

@@ -106,7 +106,7 @@ def lowest_point(model: mujoco.MjModel, data: mujoco.MjData) -> float:
 
 
 def _reach_down(model: mujoco.MjModel, geoms: Ints, up: Floats) -> Floats:
-    """Return how far geoms extend below their origins [m], shape (N,); for meshes by their bounding boxes."""
+    """Return how far geoms extend below their origins in z [m], shape (N,); meshes by their bounding boxes."""
     kind, size = model.geom_type[geoms], model.geom_size[geoms]
     boxes = model.geom_aabb[geoms]
     aside = np.sqrt(np.maximum(1 - up[:, 2] ** 2, 0))
@@ -196,7 +196,7 @@ class Backdrop(NamedTuple):
 
 
 def _line_parts(places: Floats, footprints: Floats) -> Floats:
-    """Return the fraction of each pixel covered by grid lines, given its position and width in cells."""
+    """Return the fraction of each pixel that grid lines cover; positions and pixel widths are in grid cells."""
     half, apart = 0.5 * LINE_WIDTH, np.abs(places - np.rint(places))
     width = np.maximum(footprints, 1e-9)
     part = np.clip(0.5 + (half - apart) / width, 0, 1) * np.minimum(1, LINE_WIDTH / width)

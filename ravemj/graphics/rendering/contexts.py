@@ -42,10 +42,10 @@ _BY_ENVIRONMENT = {
     **{name: "glfw" for name in ("glx", "wgl", "cgl")},
 }
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "software", "swiftshader", "basic render")
-"""Substrings of the names of software OpenGL drivers."""
+"""Substrings in renderer names of software OpenGL drivers."""
 
 _DEVICE = "MUJOCO_EGL_DEVICE_ID"
-"""Environment variable with the number of the GPU."""
+"""Environment variable for the index of the GPU."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -247,7 +247,7 @@ def _check_glfw() -> None:
 
 
 def _make_glfw(context_class: type[_GLContext]) -> _GLContext:
-    """Create an invisible window; GLFW reports errors as Python warnings and continues."""
+    """Create the context of an invisible GLFW window; raise if it fails, since GLFW only warns."""
     glfw = importlib.import_module("glfw")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

@@ -40,7 +40,7 @@ def add_drawing_geoms(
 
 
 def _squares(points: PrimitiveBatch, camera: Camera, width: int, height: int) -> PrimitiveBatch:
-    """Return points as horizontal lines on the screen whose length equals their width."""
+    """Return points as horizontal screen lines as long as they are wide, so that they appear as squares."""
     centers, sizes = points.corners[:, 0], np.maximum(points.sizes, 1)
     depth = (centers - camera.position) @ camera.rotation[:, 2]
     half = (0.5 * sizes * depth / camera.pinhole(width, height).fx)[:, None] * camera.rotation[:, 0]
@@ -48,7 +48,7 @@ def _squares(points: PrimitiveBatch, camera: Camera, width: int, height: int) ->
 
 
 def _append(scene: mujoco.MjvScene, kind: mujoco.mjtGeom, count: int) -> tuple[mujoco.MjvGeom, ...]:
-    """Allocate geoms of a type in the scene; they belong to no model and cast no shadows."""
+    """Allocate ``count`` decorative geoms in a scene, without shadows; return fewer if the scene is full."""
     first = scene.ngeom
     slots = scene.geoms[first : first + count]
     for number, slot in enumerate(slots, first):
@@ -84,9 +84,9 @@ def _column(slots: tuple[mujoco.MjvGeom, ...], name: str) -> _Floats32:
 
 
 def _frames_of_triangles(corners: Floats, eye: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return lengths of two sides, (N,) each, and matrices (N, 3, 3) of the sides' directions and the normal.
+    """Return lengths of two sides of each triangle, (N,) each, and (N, 3, 3) matrices: side directions and normal.
 
-    Only the front side is lit, so the normal points towards the camera.
+    The columns are the two directions and the normal, which points towards the eye, since only the front is lit.
     """
     edge, other = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     away = np.einsum("ij,ij->i", np.cross(edge, other), corners[:, 0] - eye) > 0

@@ -35,7 +35,7 @@ def _load(names: tuple[str, ...]) -> ctypes.CDLL:
 
 
 def _initialize_a_device(library: ctypes.CDLL) -> None:
-    """Initialize the display of any device, as mujoco.egl does."""
+    """Initialize an EGL display on any device as mujoco.egl does; raise if none works."""
     query = ctypes.CFUNCTYPE(
         ctypes.c_uint, ctypes.c_int, ctypes.POINTER(ctypes.c_void_p), ctypes.POINTER(ctypes.c_int)
     )(_address(library, b"eglQueryDevicesEXT"))

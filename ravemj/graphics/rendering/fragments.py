@@ -23,7 +23,7 @@ _PIECE = 16.0
 """Length of the segments into which lines are divided [pixels], so that bounding rectangles stay small."""
 
 _NEAREST = 1e-6
-"""Near clipping depth of lines [m]."""
+"""Near clipping depth of drawings [m]."""
 
 _SLACK = 1e-9
 """Tolerance of barycentric coordinates, so that there are no gaps between adjacent triangles."""
@@ -121,7 +121,7 @@ class Raster:
             yield _flat(ray[hit], depth, batch.rgba[owner])
 
     def _pieces(self, start: Floats, along: Floats, half: Floats) -> tuple[Ints, Floats, Floats]:
-        """Cut visible lines on the screen into segments; return the line index, start and end (0..1) of each."""
+        """Cut the visible parts of screen lines into segments; return line index, start and end (0..1) of each."""
         with np.errstate(divide="ignore", invalid="ignore"):
             crossings = np.stack([-half[:, None] - start, self.size + half[:, None] - start]) / along
         first = np.nanmax(np.minimum(*crossings), axis=1, initial=0)
@@ -205,9 +205,9 @@ class Raster:
         return _flat(ray, depth, np.column_stack([np.minimum(rgba[:, :3] * light, 1), rgba[:, 3]]))
 
     def _pairs(self, low: Floats, high: Floats) -> Iterator[tuple[Ints, Ints, Floats]]:
-        """Yield, in batches, the rays through rectangles given by two corners, shape (N, 2) each.
+        """Yield, in batches, all pairs of a rectangle and a pixel in it; ``low`` and ``high`` are corners, (N, 2) [px].
 
-        A batch has rectangle indices, ray indices, and the rays' points on the screen, shape (M, 2) [pixels].
+        A batch is: rectangle indices, ray indices of the pixels, and the pixel centres, shape (M, 2) [px].
         """
         center = 0.5 + np.array(self.offset)
         first = np.ceil(np.clip(low - center, 0, self.size)).astype(int)
@@ -229,7 +229,7 @@ class Raster:
 
 
 def _whole_screen(count: int) -> tuple[Floats, Floats]:
-    """Return lower and upper bounds of ``count`` rectangles without bounds: -inf and inf, shape (count, 2) each."""
+    """Return bounds of ``count`` infinite rectangles: -inf and inf, shape (count, 2) each."""
     return np.full((count, 2), -np.inf), np.full((count, 2), np.inf)
 
 
@@ -242,14 +242,14 @@ def _flat(ray: Ints, depth: Floats, rgba: Floats) -> Fragments:
 
 
 def _numbered(counts: Ints) -> tuple[Ints, Ints]:
-    """Return each index i ``counts[i]`` times, and for each a running number from 0 to ``counts[i] - 1``."""
+    """Return each index i repeated ``counts[i]`` times, and for each repetition its number, from 0."""
     index = np.repeat(np.arange(len(counts)), counts)
     first = np.cumsum(counts) - counts
     return index, np.arange(len(index)) - first[index]
 
 
 def _cut_off(ends: Floats) -> Floats:
-    """Clip lines, shape (N, 2, 3), at the near depth."""
+    """Clip lines in the camera frame, shape (N, 2, 3), at the near depth."""
     depth = ends[:, :, 2]
     with np.errstate(divide="ignore", invalid="ignore"):
         part = (_NEAREST - depth[:, 0]) / (depth[:, 1] - depth[:, 0])

@@ -66,7 +66,6 @@ class GlRenderer(Renderer):
         return picture
 
     def _backdrop(self, look: Look, camera: Camera) -> NDArray[np.uint8]:
-        """Render the background alone."""
         columns, rows = camera.ray_parts(*self._size)
         rays = columns + rows
         return np.rint(255 * sky_colours(look, rays[..., 2] / np.linalg.norm(rays, axis=2))).astype(np.uint8)
@@ -133,7 +132,7 @@ class GlRenderer(Renderer):
         return self._gl_scene
 
     def _read(self, stage: GlScene, depth: NDArray[np.float32] | None = None) -> NDArray[np.uint8]:
-        """Return the rendered picture, and fill a depth buffer, if given, bottom row first."""
+        """Return the rendered picture, top row first; also fill ``depth``, if given, bottom row first."""
         width, height = self._size
         pixels = np.empty((height, width, 3), dtype=np.uint8)
         stage.context.readDepthMap = _DEPTH_ZERO_FAR

@@ -30,10 +30,9 @@ SHADOW_SIZE = 1024
 """Texels along one side of a shadow map. Larger maps are slow on a CPU, and the main light has several."""
 
 _SHADOW_REACH = 1.05
-"""Half the side of the shadow map, in radii of the scene.
+"""Half the side of the shadow map, relative to the radius of the scene.
 
-MuJoCo's offset between a surface and its own shadow is proportional to it: at 1 there are shadow artefacts on surfaces
-far from the light.
+MuJoCo's offset against self-shadowing is proportional to it: 1 gives shadow artefacts on surfaces far from the light.
 """
 
 _SHADOW_DISTANCE = 1.1
@@ -43,11 +42,11 @@ _SLICES, _STACKS = 48, 24
 """Facets around and along round shapes; with MuJoCo's 28 and 16, edges are visible in close-ups."""
 
 _SAMPLES = 4
-"""Initial samples per pixel of a context: MuJoCo creates the buffer that resolves samples only at the start."""
+"""Initial samples per pixel of a context, since MuJoCo creates its multisampling buffer only at the start."""
 
 _SPARE_GEOMS = 1000
 _MAX_FIGURES = 300_000
-"""Maximum number of drawn primitives in one picture, for which MuJoCo takes a second to allocate memory."""
+"""Maximum number of drawn primitives in one picture; MuJoCo needs a second to allocate memory for so many."""
 
 _SMALLEST = 1e-3
 """Minimum radius of a drawing's bounding sphere [m], for instance of a single point."""
@@ -59,10 +58,10 @@ FLOOR_MATERIAL = "floor"
 """Name of the material with the floor's grid in MJCF files."""
 
 _FLOOR_BELOW = 1e-4
-"""Gap between the bodies and the drawn floor [radii of the scene]; a floor of the model hides it."""
+"""Gap between bodies and drawn floor, relative to the radius of the scene, so that a floor of the model hides it."""
 
 _painting = threading.Lock()
-"""Lock held while the texture of a model contains a background colour."""
+"""Lock held while the model's texture temporarily contains a background colour."""
 
 _LOG = logging.getLogger("ravemj")
 
@@ -164,7 +163,7 @@ class GlScene:
             self._add_floor(self._floor, camera)
 
     def _add_floor(self, floor: Floor, camera: Camera) -> None:
-        """Append the floor, in colours that are corrected for the lighting, with fog towards the horizon."""
+        """Append the floor with fog towards the horizon; its colour is corrected for the lighting."""
         start, end = floor.fading(camera)
         half = floor.cell * np.ceil(FLOOR_REACH * end / floor.cell)
         middle = floor.cell * np.rint(camera.position[:2] / floor.cell)
@@ -244,9 +243,9 @@ class GlScene:
         self.context.free()
 
     def _cover_with_shadows(self, near: float) -> None:
-        """Move directional lights back so that their shadow maps cover the scene.
+        """Move directional lights back so that their shadow maps cover the scene; ``near`` is the camera's near depth.
 
-        Their positions have no effect on the illumination. MuJoCo renders shadow maps with the camera's depth range.
+        The positions have no effect on the illumination. MuJoCo renders shadow maps with the camera's depth range.
         """
         center, radius = self._contents.spheres[0]
         self.context.shadowClip = _SHADOW_REACH * radius
@@ -340,7 +339,7 @@ def _find_skybox(model: mujoco.MjModel) -> int | None:
 
 @block
 def _quality_of(model: mujoco.MjModel, quality: Quality) -> Generator[None]:
-    """Set the quality fields of the model that ``MjrContext`` reads, and restore them at the end of the block."""
+    """Set the model fields for quality that ``MjrContext`` reads; restore them at the end of the block."""
     sizes: Sequence[tuple[object, str, int]] = (
         (model.vis.global_, "offwidth", quality.width),
         (model.vis.global_, "offheight", quality.height),

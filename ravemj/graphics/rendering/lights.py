@@ -21,7 +21,7 @@ _MOST = 8
 """Maximum number of lights in OpenGL."""
 
 _PARTS = 4
-"""Number of adjacent lights that replace the main light, for soft shadows."""
+"""Number of adjacent lights that replace a light with shadows, to soften these."""
 
 
 def place_lights(
@@ -68,7 +68,7 @@ def _is_own(model: mujoco.MjModel, light: mujoco.MjvLight) -> bool:
 
 
 def _spread(lights: Sequence[Light], rotation: Floats, parts: int) -> Iterator[tuple[Light, Floats, float]]:
-    """Yield lights, their directions in the world, and their fractions of the intensity."""
+    """Yield (light, world direction, fraction of intensity), with ``parts`` directions for a light with shadows."""
     for light in lights:
         direction = light.direction_in_world(rotation)
         if not light.casts_shadows or parts == 1:

@@ -33,7 +33,7 @@ _LAYERS = 6
 """Maximum number of transparent surfaces along a ray."""
 
 _EDGE = 12
-"""Difference between neighbouring pixels (0..255) above which an edge is antialiased."""
+"""Colour difference between adjacent pixels (0..255) above which both are antialiased."""
 
 _SUBPIXELS = np.array([(-0.125, -0.375), (0.375, -0.125), (0.125, 0.375), (-0.375, 0.125)])
 
@@ -47,7 +47,7 @@ _TWO_WALLS = (
     mujoco.mjtGeom.mjGEOM_CYLINDER,
     mujoco.mjtGeom.mjGEOM_BOX,
 )
-"""Convex shapes, which a ray enters and leaves once; a ray that hits a back face started inside."""
+"""Convex geom types, which a ray enters and leaves once: if it hits a back face, it started inside."""
 
 
 class RayRenderer(Renderer):
@@ -113,7 +113,7 @@ class RayRenderer(Renderer):
         self._closed = True
 
     def _scene(self, data: mujoco.MjData, camera: Camera, look: Look | None = None) -> "_RayScene":
-        """Prepare a copy of the model without hidden geoms, which other threads do not change."""
+        """Return the state to render, with a private copy of the model in which hidden geoms are excluded."""
         if self._closed:
             raise RenderingError("this renderer is closed")
         check_data(self._model, data)
@@ -191,9 +191,9 @@ class _RayScene:
         return colors
 
     def cast(self, rays: Floats) -> tuple[NDArray[np.int32], Floats, Floats]:
-        """Return geom ids (-1: none), depths and outer unit normals (N, 3) of the first hits of rays, shape (N, 3).
+        """Return geom ids (-1: none), depths and outward unit normals (N, 3) of the first hits of rays, shape (N, 3).
 
-        Like OpenGL, it ignores shapes seen from inside. Meshes are visible from both sides.
+        As in OpenGL, a convex geom that contains the camera is invisible. Meshes are visible from both sides.
         """
         count = len(rays)
         geom_ids = np.empty(count, dtype=np.int32)
@@ -213,7 +213,7 @@ class _RayScene:
         return two_walls[geom_ids]
 
     def _opacity(self, geom_ids: NDArray[np.int32]) -> Floats:
-        """Return the effective opacity, since MuJoCo draws front faces twice."""
+        """Return the opacity of geoms as MuJoCo's OpenGL shows it, which draws both walls of convex geoms."""
         walls = 1 + self._has_two_walls(geom_ids)
         return 1 - (1 - self.rgba[geom_ids, 3]) ** walls
 

@@ -22,7 +22,7 @@ COLLISION_GROUPS = np.array([1, 0, 0, 1, 0, 0], dtype=np.uint8)
 _UNSET_RGBA = (0.5, 0.5, 0.5, 1.0)  # MuJoCo's default, which means that no colour is set
 _TINT = np.array([0.3, 0.6, 1.0])
 _TINT_PART = 0.4
-"""Fraction of the highlight colour on a highlighted body; it is visible on white and on black."""
+"""Fraction of the highlight colour mixed into a highlighted body, visible on both white and black."""
 
 _OPACITY = 0.35
 

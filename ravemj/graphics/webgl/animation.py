@@ -22,10 +22,10 @@ from ravemj.graphics.webgl.surfaces import surfaces
 from ravemj.model.drawing import NOTHING, Primitives
 
 _HEIGHT = 480
-"""Height of a page in a notebook [pixels]."""
+"""Height of an animation in a notebook [px]."""
 
 _STILL = 1e-9
-"""Movement below which bodies count as static [m, and components of a unit quaternion]."""
+"""Movement below which a body counts as static [m, or component of a unit quaternion]."""
 
 
 class Recording(NamedTuple):
@@ -78,7 +78,6 @@ class Animation(NamedTuple):
         return Path(path)
 
     def _repr_html_(self) -> str:
-        """Return the notebook display."""
         return (
             f'<iframe srcdoc="{html.escape(self.html)}" title="motion" allow="fullscreen" '
             f'style="width: 100%; height: {_HEIGHT}px; border: 0"></iframe>'

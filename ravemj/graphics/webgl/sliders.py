@@ -12,13 +12,13 @@ from ravemj.engine.simulation import BodyState
 from ravemj.engine.simulation.world_model import WorldModel
 
 _SAMPLES = 129
-"""Number of slider values at which a page gets the value of a mimic joint with a nonlinear equation."""
+"""Number of slider values for which a page gets the values of joints that follow nonlinear mimic equations."""
 
 _LINEAR = 1e-12
-"""Deviation from a line [rad or m] up to which a joint's table consists of the ends of the line only."""
+"""Deviation from a straight line [rad or m] below which a slider's table is reduced to its two ends."""
 
 _FARTHEST = 2 * math.pi
-"""Range of sliders of joints without limits, to both sides [rad or m]; half of that for circular joints."""
+"""Slider range to both sides for joints without limits [rad or m]; circular joints get half of it."""
 
 
 class Slider(NamedTuple):
@@ -60,7 +60,7 @@ def mechanism(world: WorldModel, bodies: Sequence[BodyState]) -> dict[str, Any]:
 
 
 def _sliders(world: WorldModel, body: BodyState, *, several: bool) -> Iterator[Slider]:
-    """Yield a slider for each DOF that moves hinges or slides; its tables are computed with a copy of the body."""
+    """Yield a slider for each DOF that moves hinge or slide joints, with tables computed on a copy of the body."""
     copy = body.simulation.create(body.scene).own_kinematics
     first, values = world.part(body).qpos.start, body.kinematics.values()
     joints = {int(address): joint for joint, address in enumerate(world.model.jnt_qposadr)}
@@ -85,7 +85,7 @@ def _sliders(world: WorldModel, body: BodyState, *, several: bool) -> Iterator[S
 
 
 def _shortened(column: Floats) -> list[float]:
-    """Return the ends of a column if it is a line, else the whole column."""
+    """Return only the two ends of a column if its values are linear, else all values."""
     line: Floats = np.linspace(float(column[0]), float(column[-1]), len(column))
     return column[[0, -1]].tolist() if np.abs(column - line).max() < _LINEAR else column.tolist()
 
@@ -111,7 +111,7 @@ def _joint(world: WorldModel, joint: int) -> dict[str, Any]:
 
 
 def _placed(world: WorldModel, body: int, moving: Sequence[int], driven: Sequence[int]) -> dict[str, Any]:
-    """Return a moving body, its joints, and its pose before the joints move it, in its parent or in the world."""
+    """Return a moving body as JSON data: joints, and pose without joint motion in its moving parent or the world."""
     model, data = world.model, world.data
     first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
     joints = [joint for joint in range(first, first + count) if joint in driven]

@@ -19,13 +19,13 @@ _SLICES, _STACKS = 40, 20
 """Facets around and along round shapes."""
 
 _SHARP = 0.8
-"""Cosine of the angle between vertex and face normal above which MuJoCo shades smoothly."""
+"""Cosine of the angle between vertex and face normal above which MuJoCo shades a corner smoothly."""
 
 _PLANE = 1000.0
-"""Half the side of an infinite plane [m]."""
+"""Half the side [m] of the square that represents an infinite plane."""
 
 _TWO_TRIANGLES = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)
-"""Triangles of a square, as indices of its corners."""
+"""Two triangles that form a square, as indices of its corners."""
 
 
 class TriangleMesh(NamedTuple):
@@ -83,7 +83,7 @@ def surfaces(model: mujoco.MjModel, geoms: NDArray[np.bool_] | None = None, *, h
 def _shared(
     model: mujoco.MjModel, geom: int, *, is_hull: bool
 ) -> tuple[tuple[int, ...], Floats, Callable[[], TriangleMesh]]:
-    """Return the key of geoms that share a mesh, this geom's scale, shape (3,), and the constructor of the mesh."""
+    """Return a key that geoms with the same mesh share, this geom's scale, shape (3,), and the mesh's constructor."""
     kind, data, size = int(model.geom_type[geom]), int(model.geom_dataid[geom]), model.geom_size[geom]
     match mujoco.mjtGeom(kind):
         case mujoco.mjtGeom.mjGEOM_MESH:
@@ -122,7 +122,7 @@ def _mesh_of_model(model: mujoco.MjModel, number: int) -> TriangleMesh:
 
 
 def _has_hull(model: mujoco.MjModel, geom: int) -> bool:
-    """Return whether a geom has a convex hull to draw."""
+    """Return whether a geom is a colliding mesh, whose convex hull can be drawn."""
     data = int(model.geom_dataid[geom])
     is_mesh = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
     collides = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
@@ -130,7 +130,7 @@ def _has_hull(model: mujoco.MjModel, geom: int) -> bool:
 
 
 def _hull(model: mujoco.MjModel, number: int) -> TriangleMesh:
-    """Return the convex hull of a mesh, with flat faces."""
+    """Return the convex hull of a mesh as triangles with flat shading."""
     graph = model.mesh_graph[int(model.mesh_graphadr[number]) :]
     vertices, faces = int(graph[0]), int(graph[1])
     start = 2 + 3 * vertices + 3 * faces  # behind the numbers and edges of the vertices
@@ -175,7 +175,7 @@ def _cylinder() -> TriangleMesh:
 
 
 def _revolved(profile: Floats, normals: Floats) -> TriangleMesh:
-    """Revolve a profile about z, from top to bottom; its rows are distance from the axis and height."""
+    """Return the surface of revolution about z of a profile: rows (distance from z, height), from top to bottom."""
     turn = np.linspace(0, 2 * math.pi, _SLICES + 1)
     around = np.stack([np.cos(turn), np.sin(turn)], axis=1)
 

@@ -91,7 +91,7 @@ def derivative(nodes: list[Node], variable: str) -> Node:
 
 
 def _slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
-    """Return the derivative of a call, given the derivatives of its arguments."""
+    """Return the derivative of a function call; ``slopes`` are the derivatives of its arguments."""
     if node.function in _STEPS or all(is_number(slope, 0.0) for slope in slopes):
         return algebra.number(0.0)
     if node.function in _OUTER:
@@ -133,7 +133,7 @@ def _direction(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 
 
 def _turn(algebra: Algebra, y: Node, x: Node, dy: Node, dx: Node) -> Node:
-    """Return the derivative of the direction angle of the point (x, y)."""
+    """Return the derivative of atan2(y, x), given the derivatives of y and x."""
     square = algebra.add(algebra.square(x), algebra.square(y))
     return algebra.div(algebra.sub(algebra.mul(dy, x), algebra.mul(y, dx)), square)
 
@@ -156,7 +156,7 @@ def _smaller(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 
 
 def _root_slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
-    """Return the derivative of a root: minus the polynomial with differentiated coefficients, divided by its slope."""
+    """Return the derivative of a root r of a polynomial p: -dp(r) / p'(r), where dp differentiates the coefficients."""
     change, steepness = slopes[0], algebra.number(0.0)
     value = node.arguments[0]
     for coefficient, slope in zip(node.arguments[1:], slopes[1:], strict=True):
@@ -167,9 +167,9 @@ def _root_slope(algebra: Algebra, node: Call, slopes: Sequence[Node]) -> Node:
 
 
 def _law_of_cosines(algebra: Algebra, a: Node, b: Node, gamma: Node, slopes: Sequence[Node]) -> tuple[Node, Node]:
-    """Differentiate c^2 = a^2 + b^2 - 2 a b cos(gamma), and return half of both sides.
+    """Return half the derivative of c^2 = a^2 + b^2 - 2 a b cos(gamma), that is c c', in two parts.
 
-    The result is c c' without the term of gamma', and the factor of gamma'; ``slopes`` are the derivatives of a and b.
+    They are the part without gamma', and the factor of gamma'; ``slopes`` are the derivatives of a and b.
     """
     da, db = slopes
     lengths = algebra.add(algebra.mul(a, da), algebra.mul(b, db))

@@ -20,7 +20,7 @@ Compiled = Callable[[Sequence[float]], float]
 MOST_NESTED = 40
 
 _MOST_NODES = 20_000
-"""Maximum number of nodes of an equation with all its values, which no robot needs and malicious text may exceed."""
+"""Maximum number of nodes of an equation over all its values: more than robots need, a limit for malicious files."""
 
 
 def parse(text: str, variables: Collection[str]) -> "Expression":
@@ -175,7 +175,7 @@ class Expression:
 
 
 def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:
-    """Return a function that evaluates ``node`` from the values of nodes with indices."""
+    """Return a function that computes ``node`` from a list of values; ``places`` are indices of nodes in the list."""
     if node in places:
         place = places[node]
         return lambda values: float(values[place])
@@ -195,9 +195,9 @@ def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:
 
 
 def _first_within(nodes: list[Node], lower: float, upper: float) -> Node:
-    """Return a node for the first value of an equation within limits, else for its first value; see ``within``.
+    """Return a node for a multivalued equation's first value within limits, else its first value; see ``within``.
 
-    A multivalued function that is used twice has the same value in both uses.
+    If a multivalued function occurs twice with the same arguments, both have the same value.
     """
     several = [node for node in nodes if isinstance(node, Call) and FUNCTIONS[node.function].most_roots > 1]
     choices = list(product(*(range(FUNCTIONS[node.function].most_roots) for node in several)))
@@ -214,7 +214,7 @@ def _first_within(nodes: list[Node], lower: float, upper: float) -> Node:
 
 
 def _chosen(nodes: list[Node], choice: dict[Node, int], algebra: Algebra) -> Node:
-    """Return the equation with one value chosen for each multivalued function."""
+    """Return the equation with each multivalued function replaced by one of its values, by index."""
     replaced: dict[Node, Node] = {}
     for node in nodes:
         replaced[node] = node

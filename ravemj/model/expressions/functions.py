@@ -39,7 +39,7 @@ def real_roots(*coefficients: float) -> tuple[float, ...]:
 
 
 def _polished(coefficients: np.ndarray[tuple[int], np.dtype[np.float64]], roots: object) -> list[float]:
-    """Refine roots by two Newton steps, since the eigenvalues in ``np.roots`` are less accurate."""
+    """Refine real roots by two Newton steps, since the eigenvalues of ``np.roots`` are less accurate."""
     slope = np.polyder(coefficients)
     distinct: list[float] = []
     for root in np.asarray(roots, dtype=np.float64).tolist():
@@ -196,7 +196,7 @@ def _test(scalar: Callable[[float, float], bool], array: Callable[[Floats, Float
 
 
 def _inverse(scalar: Callable[[float], float], array: Callable[[Floats], Floats]) -> Function:
-    """Make the reciprocal of a function."""
+    """Create the reciprocal 1 / f of a function f."""
     return _unary(lambda x: _divide(1.0, scalar(x)), lambda x: _divide_arrays(np.ones_like(x), array(x)))
 
 
@@ -218,7 +218,7 @@ def _several(arity: int, roots: Roots, most_roots: int) -> Function:
 
 
 def _root(arity: int, roots: Roots, index: int) -> Function:
-    """Make a function that returns the root number ``index`` of its arguments, or nan if there are fewer roots."""
+    """Create a function that returns the root number ``index``, or nan if ``roots`` returns fewer."""
 
     def root(*arguments: float) -> float:
         values = roots(*arguments)

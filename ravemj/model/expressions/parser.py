@@ -70,7 +70,7 @@ def parse_nodes(text: str, variables: Collection[str]) -> Node:
 
 
 class _EquationParser:
-    """Recursive-descent parser of one text."""
+    """Recursive-descent parser of an equation."""
 
     def __init__(self, text: str, variables: Collection[str]) -> None:
         self._text = text
@@ -82,7 +82,7 @@ class _EquationParser:
         self._index = 0
 
     def equation(self) -> Node:
-        """Parse inline variables and the expression after them."""
+        """Parse definitions of inline variables and the final expression; return the latter."""
         while self._is_definition():
             self._define()
         root = self._expression(1)
@@ -103,7 +103,7 @@ class _EquationParser:
         self._inline[name.text] = value
 
     def _expression(self, lowest: int) -> Node:
-        """Parse operands and operators between them with at least the precedence ``lowest``."""
+        """Parse operands and the binary operators between them that have at least the precedence ``lowest``."""
         left = self._operand()
         while True:
             precedence, function = _BINARY.get(self._next.text, (0, ""))
@@ -113,7 +113,7 @@ class _EquationParser:
             left = self._graph.call(function, left, self._expression(precedence + 1))
 
     def _operand(self) -> Node:
-        """Parse an element, its power, and unary operators before it."""
+        """Parse an operand with its unary operators and its power."""
         signs: list[str] = []
         while self._next.text in _UNARY:
             signs.append(_UNARY[self._next.text])
@@ -183,7 +183,7 @@ class _EquationParser:
 
 
 def _tokens(text: str) -> list[Token]:
-    """Split the text into tokens; the last one marks the end."""
+    """Split the text into tokens; the last one is of the kind "end"."""
     tokens: list[Token] = []
     position = 0
     while not tokens or tokens[-1].kind != "end":

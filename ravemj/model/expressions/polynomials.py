@@ -13,7 +13,7 @@ MAX_PRODUCTS = 1000  # maximum number of terms in one multiplication, against ma
 Coefficients = tuple[float, ...]  # ascending
 
 _Polynomial = dict[tuple[str, ...], float]
-"""Nonzero coefficients by product of variables: the key of x^2 y is ("x", "x", "y"), that of the constant ()."""
+"""Nonzero coefficients by monomial: the key of x^2 y is ("x", "x", "y"), the key of the constant is ()."""
 
 
 def coefficients(nodes: list[Node], variable: str, max_degree: int) -> Coefficients | None:
@@ -65,7 +65,7 @@ def _polynomial(nodes: list[Node]) -> _Polynomial | None:
 
 
 def _combined(function: str, known: list[_Polynomial]) -> _Polynomial | None:
-    """Return the polynomial that results from a function of polynomials, or None."""
+    """Apply a function to polynomials; return None if the result is not a polynomial."""
     definition = FUNCTIONS[function]
     if all(terms.keys() <= {()} for terms in known) and definition.roots is None:
         return {(): definition.scalar(*(terms.get((), 0.0) for terms in known))}

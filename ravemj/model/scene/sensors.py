@@ -231,7 +231,7 @@ class SensorKind(NamedTuple):
 _SPELLINGS: Mapping[str, str] = MappingProxyType(
     {"baselaser1d": "baselaser2d", "baseflashlaser": "baseflashlidar3d", "baseencoder": "basejointencoder"}
 )
-"""Names that only COLLADA uses, without underscores."""
+"""Sensor type names that only COLLADA uses, and their canonical names; lower case without underscores."""
 
 SENSOR_KINDS: Mapping[str, SensorKind] = MappingProxyType(
     {

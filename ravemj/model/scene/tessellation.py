@@ -49,7 +49,7 @@ def solid_mesh(kind: str, size: tuple[float, ...]) -> Mesh:
 
 @functools.cache
 def _cube() -> tuple[Floats, Ints]:
-    """Return the corners and triangles in OpenRAVE's order (random api-91001-79, api-5000-95)."""
+    """Return corners and triangles of the cube [-1, 1]^3 in OpenRAVE's order (random api-91001-79, api-5000-95)."""
     corners = np.array([[x, y, z] for x in (1.0, -1.0) for y in (1.0, -1.0) for z in (1.0, -1.0)])
     triangles = "021 123 456 576 014 154 263 367 042 246 135 375"
     return corners, np.array([[int(corner) for corner in three] for three in triangles.split()])
@@ -57,7 +57,7 @@ def _cube() -> tuple[Floats, Ints]:
 
 @functools.cache
 def _unit_cylinder() -> tuple[Floats, Ints]:
-    """Return the centres of both ends, the upper one first, and the vertices around them in turn, as in OpenRAVE."""
+    """Return vertices and triangles of a cylinder, radius 1 and height 2, as in OpenRAVE: end centres first."""
     angles = 2 * np.pi * np.arange(SIDES) / SIDES
     ring = np.repeat(np.column_stack([np.cos(angles), np.sin(angles), np.ones(SIDES)]), 2, axis=0)
     ring[1::2, 2] = -1.0

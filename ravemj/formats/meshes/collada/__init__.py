@@ -54,7 +54,7 @@ def read_collada(file: FileContent) -> tuple[MeshPart, ...]:
 
 
 def _colours(material: ColladaMaterial) -> tuple[Rgb, Rgb, float]:
-    """Return diffuse colour, ambient colour and transparency of a part."""
+    """Return diffuse colour, ambient colour and transparency for a material."""
     diffuse = WHITE if material.textured else rgb(material.diffuse or GRAY)
     is_bare = material == ColladaMaterial()
     ambient = rgb(material.ambient or (GRAY if is_bare else _AMBIENT))
@@ -62,7 +62,7 @@ def _colours(material: ColladaMaterial) -> tuple[Rgb, Rgb, float]:
 
 
 def _root_transform(document: ColladaDocument, *, turns: bool) -> Floats:
-    """Return the matrix from the file's units to metres and, if ``turns``, from its axes to y up."""
+    """Return the 4x4 transform from the file's units to metres and, if ``turns``, from its up axis to y."""
     asset = child(document.root, "asset")
     metres = attribute_number(child(asset, "unit"), "meter", 1.0)
     up = child(asset, "up_axis")
@@ -73,7 +73,7 @@ def _root_transform(document: ColladaDocument, *, turns: bool) -> Floats:
 
 
 class _Flattening:
-    """Triangles collected from a visual scene, by material id."""
+    """Triangles of a visual scene in scene coordinates, collected by material id."""
 
     def __init__(self, document: ColladaDocument) -> None:
         self._document = document
@@ -86,11 +86,11 @@ class _Flattening:
         self.pieces: dict[str, list[Floats]] = {}
 
     def material(self, name: str) -> ColladaMaterial:
-        """Return a material; a default one if the file has none of this name."""
+        """Return the material of a name, or a default material if the file has none."""
         return self._materials.get(name, ColladaMaterial())
 
     def nodes(self, parent: Element, matrix: Floats, depth: int) -> None:
-        """Collect triangles from the child nodes of a scene or node."""
+        """Collect triangles from the descendant nodes of a scene or node; ``matrix`` is the pose of ``parent``."""
         self._nodes_left -= 1
         if depth > _MAX_DEPTH or self._nodes_left < 0:
             raise SourceError("the nodes are nested too deep or repeated too often", self._document.source(parent))

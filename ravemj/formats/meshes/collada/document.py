@@ -122,7 +122,7 @@ def children(element: Element | None, *kinds: str) -> Iterator[Element]:
 
 @functools.cache
 def _patterns(kinds: tuple[str, ...]) -> tuple[str, ...]:
-    """Return lxml patterns for elements of some kinds in any namespace."""
+    """Return lxml patterns that match elements of these names in any namespace."""
     return tuple(f"{{*}}{kind}" for kind in kinds)
 
 

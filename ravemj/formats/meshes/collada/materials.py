@@ -90,7 +90,7 @@ def _rgba(element: Element | None) -> tuple[float, ...] | None:
 
 
 def _float(effect: Element, element: Element | None) -> float | None:
-    """Return a number, given directly or by the name of a ``<newparam>`` of the effect."""
+    """Return the number in ``element``, or in the effect's ``<newparam>`` to which it refers; None if there is none."""
     values = numbers(child(element, "float"))
     reference = child(element, "param")
     if not len(values) and reference is not None:

@@ -34,7 +34,7 @@ def local_transform(element: Element) -> Floats | None:
 
 
 def _look_at(rows: Floats) -> Floats:
-    """Return the frame at the first point that looks along -z at the second, with y close to the third vector."""
+    """Return the 4x4 camera pose of a ``<lookat>`` with rows eye, target and up: -z points to the target, y up."""
     eye, interest, up = rows
     back = _unit(eye - interest)
     right = _unit(cross_rows(up, back))

@@ -89,7 +89,7 @@ def unread_primitives(geometry: Element) -> list[Element]:
 
 
 def _by_kind(mesh: Element | None) -> list[Element]:
-    """Return the primitive elements of a mesh that OpenRAVE's robots have, sorted by kind."""
+    """Return a mesh's primitive elements of the kinds that OpenRAVE reads for robots, sorted by kind."""
     return [element for kind in _OF_ROBOTS for element in children(mesh, kind)]
 
 
@@ -99,7 +99,7 @@ def _mesh(geometry: Element) -> Element | None:
 
 
 def _positions(document: ColladaDocument, mesh: Element) -> Floats:
-    """Return the points of VERTEX inputs, from the mesh's own ``<vertices>`` regardless of its id."""
+    """Return the vertex positions of a mesh, shape (N, 3), from its ``<vertices>`` regardless of their id."""
     inputs = children(child(mesh, "vertices"), "input")
     url = next((item.get("source", "") for item in inputs if item.get("semantic") == "POSITION"), "")
     wanted = url.strip().removeprefix("#")
@@ -108,7 +108,7 @@ def _positions(document: ColladaDocument, mesh: Element) -> Floats:
 
 
 def _source_rows(document: ColladaDocument, source: Element) -> Floats:
-    """Return the first three numbers of each row of a ``<source>``."""
+    """Return the x, y and z columns of a ``<source>``, shape (N, 3); empty if its stride is less than 3."""
     accessor = child(source, "technique_common", "accessor")
     array = None if accessor is None else document.find("float_array", accessor.get("source"))
     own = child(source, "float_array")
@@ -121,7 +121,7 @@ def _source_rows(document: ColladaDocument, source: Element) -> Floats:
 
 
 def _columns(accessor: Element | None, stride: int) -> list[int]:
-    """Return the columns of x, y and z; a ``<param>`` without a name is skipped."""
+    """Return the columns of x, y and z in a source: by ``<param>`` names if all three occur, else the first three."""
     names = [param.get("name", "") for param in children(accessor, "param")]
     if {"X", "Y", "Z"} <= set(names[:stride]):
         return [names.index(axis) for axis in "XYZ"]
@@ -129,7 +129,7 @@ def _columns(accessor: Element | None, stride: int) -> list[int]:
 
 
 def _polygons(element: Element, kind: str) -> tuple[Ints, Ints]:
-    """Return the number of corners of each polygon, and the position index of each corner."""
+    """Return the number of corners of each polygon, and the vertex index of each corner."""
     offsets = [
         (item.get("semantic"), int(max(attribute_number(item, "offset", 0), 0))) for item in children(element, "input")
     ]

@@ -54,7 +54,7 @@ class _AsciiParser:
         self._token = _TOKEN_VRML97 if vrml97 else _TOKEN_INVENTOR
 
     def statements(self, end: str) -> list[InventorNode]:
-        """Read nodes, prototypes and routes up to the token ``end``."""
+        """Read statements up to the token ``end``; return their nodes. Prototypes and routes give none."""
         nodes: list[InventorNode] = []
         while (token := self._next()) != end:
             node = self._statement(token)
@@ -94,7 +94,7 @@ class _AsciiParser:
             )
 
     def _node(self, token: str) -> InventorNode:
-        """Parse a node after its first token."""
+        """Parse a node whose first token, such as DEF, USE or its type, is ``token``."""
         if token == "USE":
             name = self._next()
             node = self._named.get(name)
@@ -127,7 +127,7 @@ class _AsciiParser:
         return node
 
     def _item(self, node: InventorNode, token: str) -> None:
-        """Parse an item of a node's body: a field, a child, an interface or a route."""
+        """Parse a field, child, interface or route in a node's body, and add it to the node; ``token`` is its first."""
         if token in _INTERFACE and node.kind == "Script":
             self._interface(token)
         elif token in ("DEF", "USE", "PROTO", "EXTERNPROTO", "ROUTE", "NULL") or self._peek() == "{":
@@ -196,7 +196,7 @@ class _AsciiParser:
         return words
 
     def _interface(self, token: str) -> tuple[str, Value]:
-        """Parse a field of a prototype or script; events have no value."""
+        """Parse an interface field of a prototype or script; return its name and value, which is None for events."""
         self._next()  # its type
         name = self._next()
         if self._peek() == "IS":

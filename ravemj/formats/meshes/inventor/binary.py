@@ -100,7 +100,7 @@ class _BinaryReader:
         return int(struct.unpack(">i", self._take(4))[0])
 
     def _count(self, bytes_each: int) -> int:
-        """Return the number of following items, checked against the rest of the file."""
+        """Read a number of items; raise if items of ``bytes_each`` bytes would exceed the file."""
         count = self._integer()
         if count < 0 or count * bytes_each > len(self._body) - self._at:
             self._fail("the file ends too early")

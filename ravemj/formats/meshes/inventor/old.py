@@ -64,7 +64,7 @@ def _include(traversal: Traversal, node: InventorNode, state: TraversalState) ->
 
 
 def _moving(matrix: Callable[[InventorNode], Floats]) -> Handler:
-    """Return the handler of a transform; ``matrix`` returns its 4x4 matrix."""
+    """Return the handler of a transform node; ``matrix`` computes the node's 4x4 transform."""
     return lambda _traversal, node, state: moved(state, matrix(node))
 
 
@@ -135,7 +135,7 @@ def _indexed(node: InventorNode, _count: int) -> tuple[Ints, Ints]:
 
 
 def _runs(node: InventorNode, count: int) -> tuple[Ints, Ints]:
-    """Return sizes and corners of faces that use the points in order; a size of -1 takes all remaining points."""
+    """Return sizes and point indices of faces that use consecutive points; a size of -1 takes all remaining points."""
     start = node.integer("startIndex", 0)
     there = max(count - start, 0) if start >= 0 else 0
     sizes = node.integers("numVertices", (-1,)).clip(-1, there + 1)

@@ -67,7 +67,7 @@ def _circle(count: int) -> Floats:
 
 
 def _band(high: Floats, low: Floats) -> Floats:
-    """Return the triangles between two rings, facing outwards."""
+    """Return triangles that connect two rings of equally many points, facing outwards; ``high`` is the upper ring."""
     high_next, low_next = np.roll(high, -1, axis=0), np.roll(low, -1, axis=0)
     return np.concatenate([np.stack([high, low, low_next], axis=1), np.stack([high, low_next, high_next], axis=1)])
 
