@@ -848,3 +848,18 @@ def test_roots_come_back_as_roots(tmp_path):
     joints += '<Joint name="m" enable="false" mimic_pos="sqrt(j+1) + SSSA(3,4,5)"><Body>b</Body><Body>c</Body>'
     scene = read_data(TWO_LINKS.format(joints + "<axis>0 0 1</axis></Joint>")).scene
     assert check_round_trip(scene, "collada", tmp_path) == set()
+
+
+def test_of_derivatives_in_collada_only_wrong_ones_are_left_out(tmp_path):
+    joints = "".join(
+        f'<Body name="{after}"/><Joint name="{name}"><Body>{before}</Body><Body>{after}</Body><axis>0 0 1</axis></Joint>'
+        for name, before, after in (("j", "b", "c"), ("k", "c", "d"))
+    )
+    joints += '<Body name="e"/><Joint name="m" enable="false" mimic_pos="j*k" mimic_vel="|j sin( |k j"><Body>d</Body>'
+    scene = read_data(TWO_LINKS.format(joints + "<Body>e</Body><axis>0 0 1</axis></Joint>")).scene
+    diagnostics = Diagnostics()
+    save(tmp_path / "model.dae", scene, diagnostics, "collada")
+    assert [finding.message for finding in diagnostics if finding.code == "not-written"] == [
+        "joint 'm': cannot write the derivative 'sin(' by 'j'; left out"
+    ]
+    assert (tmp_path / "model.dae").read_text().count('type="first_partial"') == 1

@@ -53,8 +53,8 @@ def present(world: CollisionWorld, pairs: Sequence[Pair]) -> dict[Pair, list[Con
     if not pairs or not world.model.data.ncon:
         return {}
     wanted: dict[Pair, tuple[Pair, bool]] = {}
-    for pair in pairs:
-        wanted[pair], wanted[pair[::-1]] = (pair, True), (pair, False)
+    for first, second in pairs:
+        wanted[first, second], wanted[second, first] = ((first, second), True), ((first, second), False)
     by_pair: dict[Pair, list[Contact]] = {}
     contacts = world.model.data.contact
     positions, normals, distances = contacts.pos.copy(), contacts.frame[:, :3].copy(), contacts.dist.tolist()

@@ -93,16 +93,24 @@ class BodyWriter:
                             out.append(partial)
 
     def _partials(self, joint: Joint, text: str) -> Iterator[tuple[str, XmlText]]:
-        """Yield variable and equation of each partial derivative in ``text``; stop with a warning at an invalid one."""
+        """Yield variable and equation of each partial derivative in ``text``; invalid ones are left out, and reported."""
         names, known = self._variables, set(self._variables.values())
         try:
-            for name, equation in partials(text).items():
-                variable = substitute(name, names)
-                if variable in known:
-                    yield variable, math_of(parse(substitute(equation, names), known), self._joint_path)
-        except (ExpressionError, TooDeepError):
-            message = f"a derivative in '{text}', of joint '{joint.name}', is left out"
-            self._diagnostics.warn("not-written", message, joint.source)
+            equations = partials(text)
+        except ExpressionError:
+            self._leave_out(joint, f"the derivatives '{text}'")
+            return
+        for name, equation in equations.items():
+            variable = substitute(name, names)
+            if variable not in known:
+                continue
+            try:
+                yield variable, math_of(parse(substitute(equation, names), known), self._joint_path)
+            except (ExpressionError, TooDeepError):
+                self._leave_out(joint, f"the derivative '{equation}' by '{name}'")
+
+    def _leave_out(self, joint: Joint, what: str) -> None:
+        self._diagnostics.warn("not-written", f"joint '{joint.name}': cannot write {what}; left out", joint.source)
 
     def _joint_path(self, variable: str) -> str:
         """Return the COLLADA path of the joint that ``variable`` represents in mimic equations."""

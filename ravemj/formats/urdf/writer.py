@@ -90,7 +90,7 @@ class _UrdfWriter:
         self.joints = _unique([joint.name or f"joint{index}" for index, joint in enumerate(body.all_joints)])
         self._taken = set(self.links)
         self._shapes = ShapeWriter()
-        self._mimics = {index: self._mimic(index, joint) for index, joint in enumerate(body.all_joints)}
+        self._mimics = {index: self._mimic(joint) for index, joint in enumerate(body.all_joints)}
         moving = [("moves",) if self._moves(index, joint) else () for index, joint in enumerate(body.all_joints)]
         self._merging = Merging(body, moving, merges=False)
         self._moving = {index for index, names in enumerate(moving) if names}
@@ -163,7 +163,7 @@ class _UrdfWriter:
             return False
         return index < len(self.body.joints) or joint.equation is not None
 
-    def _mimic(self, index: int, joint: Joint) -> _MimicRelation | None:
+    def _mimic(self, joint: Joint) -> _MimicRelation | None:
         """Return the mimic relation of a joint; None if it has none, or URDF cannot represent it, which is reported."""
         equation = joint.equation
         if equation is None:
@@ -172,7 +172,6 @@ class _UrdfWriter:
         if equation.affine is None or len(followed) != 1:
             self.losses.add("URDF's joints follow multiples of one other joint; this one moves on its own", joint.name)
             return None
-        del index
         slope = next(iter(equation.affine.slopes.values()))
         return _MimicRelation(self.joints[followed[0]], slope, equation.affine.offset)
 
