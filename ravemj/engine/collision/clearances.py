@@ -180,7 +180,7 @@ class Clearances:
         mujoco.mj_kinematics(self._model, self._data)
 
     def _travel(self, changes: Floats, rows: Ints, pairs: Ints) -> Floats:
-        """Return the maximum relative travel of each case's geoms [m], shape (k,)."""
+        """Return for each case the maximum relative travel of its two geoms [m], shape (k,)."""
         count, which = len(changes), self._rows[:, pairs]
         is_used = np.zeros(len(self._moving) + 1, dtype=bool)
         is_used[which] = True  # -1, in place of what does not move, is the last one

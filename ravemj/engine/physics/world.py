@@ -193,7 +193,7 @@ class Physics:
         return touches
 
     def _body_id(self, state: BodyState, link: int) -> int | None:
-        """Return MuJoCo's index of a link, after computing the forces on it; None before the first step."""
+        """Return MuJoCo's index of a link, None before the first step; compute the forces on all links first."""
         body = self._bodies.get(state)
         if body is None:
             return None

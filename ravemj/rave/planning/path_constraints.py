@@ -100,7 +100,7 @@ def _lacking(
 def _test(
     bodies: Bodies, given: object, manip: Callable[[], Manipulator], tolerance: float, holding: KinBody | None
 ) -> Constraint:
-    """Return the membership test of a constraint set, called with the bodies at the tested configuration."""
+    """Return the membership test of a constraint set; it tests the configuration of the bodies when it is called."""
     if isinstance(given, Sets):
         tests = [_test(bodies, member, manip, tolerance, holding) for member in given.members]
         combine = any if given.any else all

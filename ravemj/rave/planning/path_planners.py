@@ -122,8 +122,8 @@ class PathPlanner(Planner):
     def _found(self, values: Values, *, strict_iterations: int = 0) -> Search | PlannerStatus:
         """Return a search that found a path, or the status of the failure.
 
-        If ``strict_iterations`` is not 0, each edge of the path is certified, and it is the maximum number of
-        iterations.
+        ``strict_iterations`` is the maximum number of iterations of a search that certifies each edge; 0 means without
+        certificates.
         """
         with values.conditions.kept():
             problem = self._stated(values, enough=FIRST_ROOTS)
