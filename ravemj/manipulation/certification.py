@@ -129,7 +129,14 @@ class BodySpaces:
         self._clearances = Clearances(model, world.model.data, world.shapes, self.pairs, chains, ids)
 
     def test(self, middles: Floats, spreads: Floats, cases: Cases, apart: float = 0.0) -> Tested:
-        """Test whether pairs may come within ``apart`` [m] in boxes ``middles`` ± ``spreads``, shape (m, n)."""
+        """Test whether pairs of geoms may come within ``apart`` [m] of each other in boxes of configurations.
+
+        Args:
+            middles: Centres of the boxes, shape (m, n).
+            spreads: Half the sizes of the boxes, shape (m, n).
+            cases: The tests, each of one box and one pair of geoms.
+            apart: The distance [m].
+        """
         place = self._bodies.placement()
         for slot, values in enumerate(middles):
             place(values)

@@ -250,7 +250,7 @@ def _plan(env: Environment, job: Job, items: Items, seed: int, block: int | None
 
 
 def _items(items: Items) -> tuple[NDArray[Any] | None, int]:
-    """Return the items and their number; the items are None if a number is given and they will be drawn."""
+    """Return the items and their number; the items are None if only a number is given, and they are sampled later."""
     if isinstance(items, str | os.PathLike):
         items = _items_of_file(os.fspath(items))
     array = np.asarray(items)

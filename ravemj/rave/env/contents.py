@@ -38,7 +38,7 @@ _SELECTIONS: dict[SelectionOptions, Callable[[scene.KinBody, Collection[str]], b
 
 
 def selects(options: int, names: Collection[str], body: scene.KinBody) -> bool:
-    """Return whether ``SelectionOptions`` select a body; ``names`` are the bodies of ``Body`` and ``AllExceptBody``."""
+    """Return whether ``SelectionOptions`` select a body; ``names`` are those for ``Body`` and ``AllExceptBody``."""
     return _SELECTIONS[SelectionOptions(options)](body, names)
 
 
