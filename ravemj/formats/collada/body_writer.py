@@ -93,7 +93,7 @@ class BodyWriter:
                             out.append(partial)
 
     def _partials(self, joint: Joint, text: str) -> Iterator[tuple[str, XmlText]]:
-        """Yield variable and equation of each partial derivative in ``text``; invalid ones are left out, and reported."""
+        """Yield variable and equation of each partial derivative in ``text``; invalid ones are reported only."""
         names, known = self._variables, set(self._variables.values())
         try:
             equations = partials(text)
