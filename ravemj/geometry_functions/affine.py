@@ -153,7 +153,7 @@ def affine_values(pose: Pose, affinedofs: int, axis: Vec3 = Z_AXIS) -> Floats:
 
 
 def rotation_values(pose: Pose, part: DOFAffine, axis: Vec3 = Z_AXIS) -> list[float]:
-    """Return the values of one rotation type."""
+    """Return the rotation of a pose as numbers: a quaternion, an angle about ``axis``, or a rotation vector."""
     if part == DOFAffine.RotationQuat:
         return list(pose.wxyz)
     if part == DOFAffine.RotationAxis:

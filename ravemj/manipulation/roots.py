@@ -44,7 +44,7 @@ class RootSource(Protocol):
         ...
 
     def next(self, refuse: Refuse) -> Floats | None:
-        """Return another accepted root; None if there is none at this time."""
+        """Return another root of a search tree that is not refused; None if there is none at this time."""
         ...
 
     @property

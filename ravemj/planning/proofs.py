@@ -154,7 +154,7 @@ def is_proved(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = 
 
 
 def prove(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = (), *, whole: bool = True) -> Proof:
-    """Prove as much of a motion as possible; pairs are ignored on their spans in ``exempt``.
+    """Prove for as much of a motion as possible that no pair of shapes touches, except on the spans ``exempt``.
 
     Unless ``whole``, the first undecided span ends the proof.
     """

@@ -97,7 +97,7 @@ class StackedJacobians:
         self._body_ids: list[int] = kinematics.body_ids.tolist()
 
     def fill(self, links: Sequence[int], points: Floats) -> None:
-        """Write the derivatives of world points (k, 3) fixed to links, by MuJoCo's velocities."""
+        """Write the Jacobians of world points (k, 3) fixed to links, with respect to MuJoCo's velocities."""
         self._kinematics.place_coms()
         model, data, ids = self._kinematics.model, self._kinematics.data, self._body_ids
         for (moving, turning), link, point in zip(self._views, links, points, strict=True):

@@ -189,7 +189,7 @@ class Library:
         return document
 
     def metres(self, element: Element) -> float:
-        """Return the length unit of an element [m], times the scale of the reading."""
+        """Return the length unit of an element [m], multiplied by the scale that the user has chosen."""
         return self._scale * self._unit(element)
 
     def _unit(self, element: Element) -> float:

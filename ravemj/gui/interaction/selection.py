@@ -260,7 +260,7 @@ class Selector:
         return selection is not None and selection.link in self.pins.of_body(selection.body)
 
     def point_line(self) -> str:
-        """Return the description of the clicked point at its present pose; empty without a selection."""
+        """Return the description of the clicked point, which moves with its link; empty without a selection."""
         selection = self.selection
         if selection is None:
             return ""

@@ -198,7 +198,7 @@ class Viewer(Interactive):
         """End ``main``; a window closes."""
 
     def EnvironmentSync(self) -> None:
-        """Block until the window shows the present state of the environment. Pictures always do."""
+        """Block until the window shows the present state of the environment; nothing to do without a window."""
 
     def RegisterViewerThreadCallback(self, callback: Callback) -> Handle:
         """Register a callback in the thread of the window, for each iteration of its event loop.

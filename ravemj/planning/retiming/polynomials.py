@@ -53,7 +53,7 @@ class Polynomial:
         return np.inf
 
     def drive(self, segment: Segment, duration: float, limits: PathLimits) -> SegmentRows | None:
-        """Return the end of a segment as its only row; None if the limits do not allow its velocities."""
+        """Return rows with only the end state of a segment; None if the limits do not allow its velocities."""
         if not segment.is_from_rest_to_rest and (duration <= 0 or not self._keeps_limits(segment, duration, limits)):
             return None
         rest = np.zeros_like(segment.step)[None]

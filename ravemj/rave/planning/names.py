@@ -53,7 +53,7 @@ def RaveCreatePlanner(env: "Environment", name: str) -> Planner | None:
             ``OMPL_PRM`` and so on.
 
     Returns:
-        The planner, or None for a name that is unknown to OpenRAVE, too.
+        The planner; None, with a logged warning, if there is no planner of this name.
 
     Example:
         >>> planner = RaveCreatePlanner(env, "birrt")
