@@ -5,7 +5,7 @@ import re
 import pytest
 from command_line import ravemj_command
 
-WALL = """<KinBody name="wall"><Body name="w"><Geom type="box"><Extents>0.2 0.2 0.2</Extents></Geom></Body>
+WALL = """<KinBody name="wall"><Body name="w"><Geom type="box"><Extents>0.06 0.06 0.06</Extents></Geom></Body>
 </KinBody>"""
 TWO = """<Environment><KinBody name="a"><Body><Geom type="box"><Extents>1 1 1</Extents></Geom></Body></KinBody>
 <KinBody name="b"><Body><Geom type="box"><Extents>1 1 1</Extents></Geom></Body></KinBody></Environment>"""
@@ -77,7 +77,7 @@ def test_where_no_pose_can_be_solved_are_grasps_of_the_hand_alone(folder):
 
 def test_a_wall_is_too_wide_for_the_jaws(folder):
     done = ravemj_command(
-        folder, "grasp", "panda", "wall.xml", "--at", "0.7,0,0.5", "--method", "antipodal", "-o", "x.html"
+        folder, "grasp", "panda", "wall.xml", "--at", "0.6,0,0.4", "--method", "antipodal", "-o", "x.html"
     )
     assert (done.returncode, done.stderr) == (1, "")
     assert re.search(r"^ *\d+ +too wide$", done.stdout, re.MULTILINE)

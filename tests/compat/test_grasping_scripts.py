@@ -35,8 +35,15 @@ class Options:
     boxdelta = 0.04
 
 
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory):
+    """OpenRAVE's folder of those tests that only load the table, which the first one writes."""
+    return tmp_path_factory.mktemp("tables")
+
+
 @pytest.fixture
-def gmodel(env):
+def gmodel(env, tables, monkeypatch):
+    monkeypatch.setenv("OPENRAVE_HOME", str(tables))
     gmodel = databases.grasping.GraspingModel(env.GetRobots()[0], env.GetKinBody("mug"))
     if not gmodel.load():
         gmodel.autogenerate(Options)

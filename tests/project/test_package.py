@@ -61,9 +61,22 @@ def room(path: Path) -> str:
     return "__init__" if first in names.PUBLIC else first
 
 
+def blocks(node: ast.AST) -> list[ast.AST]:
+    """The statements right below a statement; expressions, where most nodes are, are left out."""
+    fields = ("body", "orelse", "handlers", "finalbody", "cases")
+    return [child for field in fields for child in getattr(node, field, [])]
+
+
+def statements(node: ast.AST):
+    """All statements below a node."""
+    for child in blocks(node):
+        yield child
+        yield from statements(child)
+
+
 def imports(path: Path):
     """Names of all modules that a file imports, anywhere in it."""
-    for node in ast.walk(tree(path)):
+    for node in statements(tree(path)):
         if isinstance(node, ast.Import):
             yield from (name.name for name in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -110,7 +123,7 @@ def modules_imported(node: ast.AST, typing: bool) -> set[str]:
         members = {f"{node.module}.{name.name}" for name in node.names}
         names = {name if name.removeprefix("ravemj.") in MODULES else node.module for name in members}
     else:
-        below = list(ast.iter_child_nodes(node))
+        below = blocks(node)
         if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING" and not typing:
             below = node.orelse
         return set().union(*(modules_imported(child, typing) for child in below))
@@ -291,7 +304,8 @@ def code_lines(path: Path) -> set[int]:
 
 
 def test_modules_are_of_readable_size():
-    sizes = {name: len(code_lines(path)) for name, path in MODULES.items()}
+    long = {name: path for name, path in MODULES.items() if len(path.read_text(encoding="utf-8").splitlines()) > 400}
+    sizes = {name: len(code_lines(path)) for name, path in long.items()}
     assert {name: lines for name, lines in sizes.items() if lines > 400} == {}
 
 
