@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from agreement import CORPUS, NEEDS_THE_CORPUS
 from browsers import NEEDS_A_BROWSER, WEBGL_FLAGS, Desk, around, launched
-from conftest import MODELS
+from conftest import MODELS, one_in
 from slow_link import SlowLink
 from test_web import FROM_FRONT, SIZE
 from test_web import Page as PicturePage
@@ -372,7 +372,7 @@ class TestWhatIsSeen:
         await_that(lambda: away() <= 0.5, "points are elsewhere")
         del shown
 
-    @pytest.mark.parametrize("desk", [meshes, transparent], indirect=True)
+    @pytest.mark.parametrize("desk", one_in(2, [meshes, transparent]), indirect=True)
     def test_pictures_lie_within_half_a_pixel_of_the_servers(self, desk):
         desk.core.look_from(desk.env.renderer.camera_for_stills(4 / 3))
         desk.viewer.SetCamera(desk.core.view.camera.T_world_camera)
@@ -410,9 +410,10 @@ class TestWhatIsSeen:
         ("eye", "focus"),
         [
             ((0.55, 2.5, 1.35), (0.2, 0, 0.3)),
-            ((1.6, 1.3, 0.2), (0.8, 0, 0.2)),  # low
-            ((0.9, 0.6, 0.5), (0.3, -0.3, 0.2)),  # over the floor, which reaches behind the camera
-            ((1.0, 6, 4), (0, 0, 0)),
+            pytest.param((1.6, 1.3, 0.2), (0.8, 0, 0.2), marks=pytest.mark.stress),  # low
+            # over the floor, which reaches behind the camera
+            pytest.param((0.9, 0.6, 0.5), (0.3, -0.3, 0.2), marks=pytest.mark.stress),
+            pytest.param((1.0, 6, 4), (0, 0, 0), marks=pytest.mark.stress),
         ],
     )
     def test_lines_that_reach_behind_the_camera_are_hidden_by_bodies(self, desk, eye, focus):
@@ -430,6 +431,7 @@ class TestWhatIsSeen:
         desk.await_picture()
         del shown
 
+    @pytest.mark.stress
     def test_nothing_is_cut_off_a_ball(self, desk):
         desk.viewer.SetCamera([[0, 0, -1, 4], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
         ball = desk.env.plot3([[1, 0, 0]], 2, [0, 1, 1], 1)  # around the robot, and far in front of it
@@ -471,6 +473,7 @@ class TestWhatIsSeen:
         assert asked
         assert all(url.startswith((desk.viewer.url, "data:")) for url in asked), asked
 
+    @pytest.mark.stress
     def test_behind_a_slow_way_to_the_server_it_needs_few_answers(self, desk, chromium):
         port = desk.viewer.server.port
         with SlowLink(port, rate=3e5, delay=0.03) as link:
@@ -492,6 +495,7 @@ class TestWhatIsSeen:
         assert desk.page.evaluate("drawing.view.position") == pytest.approx(desk.core.view.camera.position, abs=1e-6)
         assert desk.page.evaluate("drawing.acknowledged < drawing.predictedBy")
 
+    @pytest.mark.stress
     def test_pictures_stand_in_while_webgl_is_lost(self, desk):
         assert not desk.page.is_visible("#source")
         for values in ([0.4, 0.3], [0.9, 0.7]):
@@ -528,6 +532,7 @@ class TestWhatIsSeen:
         assert set(sizes) == {320, 640}
         desk.await_picture()
 
+    @pytest.mark.stress
     def test_it_shows_pictures_if_the_address_asks_for_them(self, desk):
         desk.page.goto(desk.viewer.url + "?pictures")
         desk.await_picture()

@@ -262,6 +262,7 @@ def test_pictures_have_16_to_4096_pixels_a_side(viewer, shape, size, caplog):
     handle.Close()
 
 
+@pytest.mark.stress
 def test_files_have_these_sizes_too(env, viewer):
     for size, expected in (((8192, 1), (4096, 16)), ((5000, 2500), (4096, 2048)), ((333, 250), (333, 250))):
         viewer.interaction.handle(Resize(*size))

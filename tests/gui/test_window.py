@@ -45,6 +45,7 @@ def is_still(display: Display, window: int) -> bool:
     return np.array_equal(display.picture(window), picture)
 
 
+@pytest.mark.stress
 def test_play_ends_by_ctrl_c_and_by_closing_while_it_moves(display, folder):
     with Started(display, folder, *PLAY, "--duration", "6000") as command:
         display.await_pose(display.await_window(), "hanging")
@@ -161,6 +162,7 @@ def colours_while_it_runs(display: Display, command: Started) -> set[str]:
     return colours
 
 
+@pytest.mark.stress
 def test_the_prompt_and_the_window_do_not_wait_for_each_other(display, folder):
     (folder / "still.py").write_text((folder / "myscript.py").read_text().rpartition("    play_trajectory")[0])
     terminal = on_terminal(folder, "-m", "ravemj", "run", "-i", "still.py", DISPLAY=display.name)
@@ -180,6 +182,7 @@ def test_the_prompt_and_the_window_do_not_wait_for_each_other(display, folder):
     await_that(lambda: not display.windows(), "the window stays")
 
 
+@pytest.mark.stress
 def test_a_window_shows_what_a_script_publishes_while_it_has_the_environment(display, folder):
     (folder / "publishes.py").write_text("""
 import json, math
@@ -280,6 +283,7 @@ def test_a_script_that_fails_or_exits_shows_its_own_end(display, folder):
         assert "ravemj/" not in done.stderr
 
 
+@pytest.mark.stress
 def test_a_display_that_is_not_there_is_said_and_the_script_goes_on(folder):
     done = ravemj_command(folder, "run", "myscript.py", DISPLAY=":9999")
     assert (done.returncode, done.stdout) == (0, PRINTED_BY_THE_SCRIPT)
