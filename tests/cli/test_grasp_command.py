@@ -34,6 +34,7 @@ def test_a_box_on_the_floor_and_the_page(folder):
         assert text in page
 
 
+@pytest.mark.stress
 def test_out_of_reach_are_grasps_of_the_hand_alone(folder):
     done = ravemj_command(folder, "grasp", "panda", "box", "--at", "3,0,0.2", "--method", "antipodal", "-o", "x.html")
     assert (done.returncode, done.stderr) == (0, "")

@@ -121,7 +121,13 @@ def test_what_cannot_be_shown_is_one_line(folder, options, code, message):
     assert message in done.stderr
 
 
-@pytest.mark.parametrize("how", [pytest.param(how, marks=NEEDS_A_SCREEN) for how in ("closed", "interrupted")])
+@pytest.mark.parametrize(
+    "how",
+    [
+        pytest.param("closed", marks=NEEDS_A_SCREEN),
+        pytest.param("interrupted", marks=[*NEEDS_A_SCREEN, pytest.mark.stress]),
+    ],
+)
 def test_a_window_where_there_is_a_display(display, folder, how):
     with Started(display, folder, "-m", "ravemj", "view", "env.xml") as command:
         window = display.await_window()

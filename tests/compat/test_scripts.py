@@ -150,7 +150,10 @@ def agree(text: str, expected: str) -> bool:
     )
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in NEIGHBOURS])
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.stress] * (name == "plan")) for name in NAMES if name not in NEIGHBOURS],
+)
 def test_script(name, folder):
     options = ["--py2"] if name.endswith("_py2") else []
     done = ravemj_command(folder, "run", *options, f"{name}.py")

@@ -113,6 +113,7 @@ def test_run_stays_in_ipython(folder):
     assert leave(terminal, 4)[1] == 0
 
 
+@pytest.mark.stress
 def test_run_lets_scripts_open_ipython(folder):
     text = (folder / "myscript.py").read_text() + "    import IPython\n    IPython.embed()\n    print('after')\n"
     (folder / "embedding.py").write_text(text)

@@ -222,7 +222,7 @@ def names(zae, monkeypatch) -> dict[str, str]:
 
 
 @pytest.mark.parametrize(
-    "way", one_in(3, ["a file", "an archive", "a URI", "an id", "a relative path and data", "xml"])
+    "way", one_in(6, ["a file", "an archive", "a URI", "an id", "a relative path and data", "xml"])
 )
 def test_commands(way, names, capsys, tmp_path):
     name = names[way]

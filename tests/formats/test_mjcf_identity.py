@@ -46,7 +46,9 @@ def read(path: Path):
 
 
 @pytest.mark.parametrize("options", OPTIONS)
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize(
+    "model", [pytest.param(model, marks=[pytest.mark.stress] if "workshop" in model else []) for model in MODELS]
+)
 def test_what_is_converted_comes_back(model, options, tmp_path):
     (tmp_path / "again").mkdir()
     first = convert(ROOT / model, tmp_path / "model.xml", **OPTIONS[options])

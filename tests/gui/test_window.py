@@ -22,7 +22,7 @@ BACKGROUND = (255, 255, 0)
 
 
 def test_play_opens_a_window_moves_and_stays_until_it_is_closed(display, folder):
-    rests = [(0, 0), (2, 0), (2.5, np.pi / 2), (4.5, np.pi / 2), (5, np.pi)]
+    rests = [(0, 0), (1.5, 0), (1.7, np.pi / 2), (3.2, np.pi / 2), (3.4, np.pi)]
     (folder / "rests.csv").write_text("time,Joint0\n" + "\n".join(f"{time},{angle}" for time, angle in rests))
     with Started(display, folder, *PLAY, "--trajectory", "rests.csv") as command:
         window = display.await_window()
@@ -39,9 +39,9 @@ def test_play_opens_a_window_moves_and_stays_until_it_is_closed(display, folder)
 
 
 def is_still(display: Display, window: int) -> bool:
-    """Whether the picture is the same a second later; on a busy machine the last pictures of a motion may be late."""
+    """Whether the picture stays for half a second; on a busy machine the last pictures of a motion may be late."""
     picture = display.picture(window)
-    time.sleep(1)
+    time.sleep(0.5)
     return np.array_equal(display.picture(window), picture)
 
 

@@ -138,6 +138,7 @@ def test_regions_out_of_reach(kind):
     assert error.status.causes == {"out of reach": 200}
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("kind", one_in(2, SOLVERS))
 def test_regions_outside_the_limits(kind):
     robot = planar(1, 1)
