@@ -239,6 +239,7 @@ def test_a_terminal_that_closes_leaves_nothing(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.stress
 @POSIX
 def test_the_next_one_removes_what_a_killed_one_left(tmp_path):
     with played(tmp_path, "frames") as process:

@@ -42,6 +42,7 @@ def test_out_of_reach_are_grasps_of_the_hand_alone(folder):
     assert "the arm is" not in (folder / "x.html").read_text()
 
 
+@pytest.mark.stress
 def test_the_manipulator_with_a_gripper_is_taken(folder):
     camera = "<Manipulator name='camera'><base>bar</base><effector>bar</effector></Manipulator></Robot>"
     text = BALL.replace("</Robot>", camera).replace('<Manipulator name="hand">', "<Manipulator name='arm'>")
@@ -69,6 +70,7 @@ BALL = """<Robot name="post"><KinBody>
   <joints>l r</joints><closingdirection>-1 -1</closingdirection></Manipulator></Robot>"""
 
 
+@pytest.mark.stress
 def test_where_no_pose_can_be_solved_are_grasps_of_the_hand_alone(folder):
     (folder / "post.xml").write_text(BALL)
     done = ravemj_command(folder, "grasp", "post.xml", "box", "--method", "antipodal")

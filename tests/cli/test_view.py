@@ -53,6 +53,7 @@ def test_the_port_is_the_one_that_is_asked_for_or_an_error(folder):
         assert page.url.startswith(f"http://127.0.0.1:{port}/")
 
 
+@pytest.mark.stress
 def test_another_host_is_served_with_a_warning(folder):
     with served(folder, "--web", "--host", "0.0.0.0") as page:
         port = page.url.split(":")[2].split("/")[0]

@@ -137,6 +137,7 @@ def test_shell_has_env_robot_and_viewer(folder):
     assert "Traceback" not in printed
 
 
+@pytest.mark.stress
 def test_shell_completes_at_a_real_prompt(folder):
     terminal = on_terminal(folder, "-m", "ravemj", "shell", "env.xml", simple=False, PROMPT_TOOLKIT_NO_CPR="1")
     terminal.expect("In .*1.*: ")

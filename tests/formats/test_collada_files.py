@@ -193,6 +193,7 @@ print(peak() - before)
 """
 
 
+@pytest.mark.stress
 @pytest.mark.skipif(not os.access("/proc/self/clear_refs", os.W_OK), reason="only Linux says how much memory was held")
 def test_memory_is_bounded_by_the_size_of_the_file(tmp_path):
     script = runpy.run_path(str(MODELS.parent / "scripts" / "models" / "scara.py"))

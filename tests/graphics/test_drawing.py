@@ -222,7 +222,7 @@ def test_drawings_and_bodies_hide_each_other(how):
 
 
 @both
-@pytest.mark.parametrize("shadows", [False, True])
+@pytest.mark.parametrize("shadows", one_in(2, [False, True]))
 def test_alpha_mixes_with_what_is_behind(how, shadows):
     light = '<light type="directional" dir="0 0 1" diffuse="0 0 0" specular="0 0 0" castshadow="true"/>'
     geoms = light + '<geom size=".01" pos="0 0 -1"/>'  # far from where it is looked at

@@ -162,7 +162,7 @@ def test_rays_look_like_opengl(env, how):
 class TestInABrowser:
     pytestmark = NEEDS_A_BROWSER
 
-    @pytest.mark.parametrize("shadows", [False, True])
+    @pytest.mark.parametrize("shadows", one_in(2, [True, False]))
     def test_a_page_looks_like_a_picture(self, env, opened, shadows):  # noqa: F811
         player = opened(env.animation(shadows=shadows).html)
         picture = player.picture()

@@ -100,6 +100,7 @@ def test_osmesa_where_libegl_is_missing(reports):
     assert python(HIDE.format(words=["EGL"]) + DRAW + "print(draw().backend)") == "osmesa"
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize(
     "broken",
     one_in(2, [{"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent"}, {"LIBGL_DRIVERS_PATH": "/nonexistent"}]),

@@ -176,6 +176,7 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
         pass
 
 
+@pytest.mark.stress
 @NEEDS_A_BROWSER[0]
 @NEEDS_A_BROWSER[1]
 @NEEDS_A_BROWSER[2]

@@ -188,6 +188,7 @@ def test_without_pins_the_base_stays(limbs):
     limbs.let_go(target)
 
 
+@pytest.mark.stress
 def test_the_button_pins_the_selected_limb_and_takes_the_pin_out(limbs):
     desk = limbs.desk
     desk.click(desk.at(middle(desk.robot, "LFoot")))

@@ -332,6 +332,7 @@ def test_pages_have_cameras_of_their_own_and_share_what_is_selected(env, viewer)
             await_that(lambda page=page: np.abs(page.settled().astype(int) - expected).mean() < 0.1)
 
 
+@pytest.mark.stress
 def test_a_page_that_comes_back_has_the_view_that_it_had(viewer):
     with Page(viewer, "one") as page:
         page.escape()

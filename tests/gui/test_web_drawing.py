@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from agreement import CORPUS, NEEDS_THE_CORPUS
 from browsers import NEEDS_A_BROWSER, WEBGL_FLAGS, Desk, around, launched
-from conftest import MODELS, one_in
+from conftest import MODELS
 from slow_link import SlowLink
 from test_web import FROM_FRONT, SIZE
 from test_web import Page as PicturePage
@@ -352,6 +352,7 @@ class TestWhatIsSeen:
         missing = (expected & ~near(covered)) | (~expected & ~near(is_open))
         return not (missing | (~is_open & ~near(expected)) | (~covered & ~near(~expected))).any()
 
+    @pytest.mark.stress
     def test_a_point_lands_within_half_a_pixel(self, desk):
         desk.viewer.SetBkgndColor([1, 1, 1])
         places = np.array([[0.3, 0.3, 0.2], [0.2, -0.25, 0.1], [-0.3, 0.1, -0.1]])
@@ -372,7 +373,8 @@ class TestWhatIsSeen:
         await_that(lambda: away() <= 0.5, "points are elsewhere")
         del shown
 
-    @pytest.mark.parametrize("desk", one_in(2, [meshes, transparent]), indirect=True)
+    @pytest.mark.stress
+    @pytest.mark.parametrize("desk", [meshes, transparent], indirect=True)
     def test_pictures_lie_within_half_a_pixel_of_the_servers(self, desk):
         desk.core.look_from(desk.env.renderer.camera_for_stills(4 / 3))
         desk.viewer.SetCamera(desk.core.view.camera.T_world_camera)
@@ -513,6 +515,7 @@ class TestWhatIsSeen:
         await_that(lambda: desk.page.evaluate("drawing !== null && drawing.name !== undefined"), "it draws no more")
         desk.await_picture()
 
+    @pytest.mark.stress
     def test_pictures_are_coarse_while_things_move_and_crisp_at_rest_where_drawing_takes_long(self, desk):
         desk.await_picture()
         desk.page.evaluate(

@@ -106,6 +106,7 @@ class TestWhoMayShowIt:
             with pytest.raises(ArgumentError, match=r"RAVEMJ_EMBED: is .* should be an origin"):
                 env.serve_viewer()
 
+    @pytest.mark.stress
     def test_the_command_line(self, folder):
         with Served(folder, "view", "--web", "--embed", "https://a.example", "--embed", "https://b", "env.xml") as page:
             assert ancestors(page) == {*USUAL, "https://a.example", "https://b"}
@@ -230,6 +231,7 @@ class TestInABrowser:
                 page.reload()
             frames(page)
 
+    @pytest.mark.stress
     def test_a_script_moves_the_views_of_all_frames(self, page, viewer):
         with Around(*2 * [f'src="{viewer.url}"']) as around:
             page.goto(around.url)

@@ -109,6 +109,7 @@ class TestCameraMode:
             desk.await_camera()
         assert desk.core.view.distance == pytest.approx(0.8 * 0.9**2)
 
+    @pytest.mark.stress
     def test_left_and_middle_together_zoom(self, desk):
         desk.press((300, 100))
         desk.press((300, 100), Button.MIDDLE)
@@ -467,6 +468,7 @@ class TestPage:
         desk.robot.SetDOFValues([0.5, 0])
         await_that(lambda: (page.wait_for_timeout(20), len(frames) > count)[1], "nothing was sent")
 
+    @pytest.mark.stress
     @pytest.mark.parametrize(
         "own_desk",
         one_in(2, [(pendulum, {"device_scale_factor": 1.5}), (pendulum, {"device_scale_factor": 2})]),
@@ -495,6 +497,7 @@ class TestPage:
         desk.page.mouse.move(size[0] / 2, size[1] / 2)
         assert_apart(desk.page, "button, .wheel, #text", 5)
 
+    @pytest.mark.stress
     def test_tabs_have_their_own_cameras_and_keep_them_when_they_are_loaded_again(self, desk):
         other = desk.open_page()
         desk.page.bring_to_front()
@@ -565,6 +568,7 @@ class TestTrouble:
         own_desk.click(own_desk.at(own_desk.point(2, 0.15, 0, 0)))
         await_that(lambda: own_desk.viewer.GetSelectedBody() == own_desk.robot, "clicks do nothing any more")
 
+    @pytest.mark.stress
     @pytest.mark.parametrize("how", one_in(3, ["SetViewer", "Destroy", "quitmainloop"]))
     def test_a_page_says_that_its_viewer_is_closed(self, own_desk, how):
         own_desk.drag((320, 100), (340, 130))

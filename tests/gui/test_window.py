@@ -138,6 +138,7 @@ def test_play_with_an_output_opens_no_window(display, folder):
     assert len(list((folder / "frames").iterdir())) == 3
 
 
+@pytest.mark.stress
 def test_the_tutorials_script_shows_a_window_and_finishes(display, folder):
     colours = set()
     for _ in range(4):  # the window is there for a second, which a busy machine may miss

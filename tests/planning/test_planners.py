@@ -192,6 +192,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.stress
 def test_ctrl_c_leaves_the_robot_where_it_was_and_nothing_half_executed():
     script = CTRL_C.format(folders=[str(TESTS), str(TESTS / "planning")])
     process = subprocess.Popen(

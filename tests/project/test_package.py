@@ -223,6 +223,7 @@ def test_everything_imported_into_the_package_is_exported():
     assert len(set(ravemj.__all__)) == len(ravemj.__all__)
 
 
+@pytest.mark.stress
 def test_modules_of_openrave_are_imported_when_they_are_asked_for():
     code = "import ravemj, sys; print('ravemj.compat.databases' in sys.modules, ravemj.databases.__name__)"
     assert run(code).split() == ["False", "ravemj.compat.databases"]

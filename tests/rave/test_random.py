@@ -29,7 +29,7 @@ MISTAKES = {
     r"GetLinkAccelerations(\[\])+$": "OpenRAVE leaves out what accelerates followers",
 }
 """Places where numbers of scripts may differ, and why; the same are left out of the API scripts."""
-PARTS = 12
+PARTS = 24
 """One part of each archive runs by default, all of them with ``-m stress``."""
 
 

@@ -52,7 +52,9 @@ def files(folder):
     return {path.name: path.read_bytes() for path in sorted((folder / "shards").glob("*.npz"))}
 
 
-@pytest.mark.parametrize("name", JOBS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.stress] if name == "pictures" else []) for name in JOBS]
+)
 def test_shards_and_executors_do_not_change_numbers(name, tmp_path):
     model, what, count, more = JOBS[name]
     whole = ravemj.sweep(model, what, count, tmp_path / "whole", shard=count, **more)
@@ -431,6 +433,7 @@ def test_the_environment_stays_as_it_is(tmp_path):
     np.testing.assert_array_equal(env.GetRobots()[0].GetDOFValues(), before)
 
 
+@pytest.mark.stress
 def test_digests_are_those_of_other_processes():
     code = """
 import ravemj
