@@ -42,6 +42,7 @@ def test_one_address_is_printed_and_a_signal_ends_it(folder, options, number, en
             assert connection.protocol.close_code == CloseCode.GOING_AWAY, "the page is told"
 
 
+@pytest.mark.stress
 def test_the_port_is_the_one_that_is_asked_for_or_an_error(folder):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
@@ -66,6 +67,7 @@ def test_another_host_is_served_with_a_warning(folder):
         assert "ravemj: warning: browsers of other machines can come here" in warning
 
 
+@pytest.mark.stress
 def test_the_robot_of_the_option_is_looked_at_and_selected(folder):
     with Served(folder, "view", "--web", "workshop", "--robot", "scara") as page:
         address = page.url.replace("http", "ws", 1) + "socket"

@@ -136,6 +136,7 @@ def test_repeated_nodes(refused):
     refused("faces.iv", f"#Inventor V2.1 ascii\n{faces}\n{doubling}", "corners of polygons")
 
 
+@pytest.mark.stress
 def test_repeated_prototypes(refused):
     text = "PROTO P0 [ ] { Shape { } }" + "".join(
         f"PROTO P{k} [ ] {{ Group {{ children [ P{k - 1} {{ }} P{k - 1} {{ }} ] }} }}" for k in range(1, 40)

@@ -59,7 +59,7 @@ def losses(kind: str, name: str) -> set[str]:
 
 
 @pytest.mark.parametrize("kind", NAMES)
-@pytest.mark.parametrize("name", one_in(2, INPUTS))
+@pytest.mark.parametrize("name", one_in(4, INPUTS))
 def test_inputs_survive(kind, name, tmp_path, monkeypatch):
     monkeypatch.delenv("OPENRAVE_DATA", raising=False)
     reading = read_file(REPOSITORY / name)

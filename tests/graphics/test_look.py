@@ -428,6 +428,7 @@ def test_mujoco_s_own_renderer_shows_the_shadow_of_a_converted_file(tmp_path, ho
     np.testing.assert_array_equal(model.body_mass, runtime.body_mass)
 
 
+@pytest.mark.stress
 def test_the_command_line_lists_the_choices(tmp_path, capsys):
     from ravemj.cli import main
 

@@ -119,6 +119,7 @@ class TestCameraMode:
         assert desk.core.view.distance == pytest.approx(0.8 * math.exp(-4 * 40 / 480))
         desk.await_camera()
 
+    @pytest.mark.stress
     def test_s_and_a_click_centre_on_the_surface_and_later_turns_are_about_it(self, desk):
         target = desk.point(2, 0.1, 0, 0)
         desk.click(desk.at(target), keys=["s"])

@@ -483,6 +483,7 @@ def test_a_drag_goes_on_beyond_the_window(desk):
 # --- the window itself
 
 
+@pytest.mark.stress
 def test_nothing_is_drawn_while_nothing_changes_and_little_is_computed(desk):
     def turns(statement: str) -> tuple[int, float]:
         """Let the window turn often, with something done for each turn; return new pictures and the time computed."""
@@ -514,6 +515,7 @@ def test_it_turns_and_draws_at_most_as_often_as_a_screen_shows(desk):
         assert 0 < rate < 66, name
 
 
+@pytest.mark.stress
 def test_the_user_s_size_is_the_view_s(desk):
     for size in ((800, 500), (400, 300)):
         desk.display.tool("windowsize", desk.window, *map(str, size))

@@ -235,7 +235,7 @@ class TestCertificates:
         assert not jumping.is_certified()
         assert jumping.certificate.reason == "nothing moves"
 
-    @pytest.mark.parametrize("seed", range(6))
+    @pytest.mark.parametrize("seed", one_in(3, range(6)))
     def test_certified_motions_touch_nothing_and_keep_the_gap(self, seed):
         env = ravemj.Environment()
         env.Load(str(MODELS / "puma560.xml"))

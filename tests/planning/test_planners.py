@@ -230,6 +230,7 @@ def test_a_time_limit_ends_a_search_within_one_iteration(robot, monkeypatch, nam
     assert 300 < passed[0] < 1500
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("name", ["birrt", "BasicRRT", "ExplorationRRT", "RAStar"])
 def test_the_memory_of_a_failing_search_is_bounded_by_what_it_did(robot, name):
     """Nothing is set aside for a thousand million iterations; a configuration takes less than a kilobyte."""
@@ -466,6 +467,7 @@ def test_modules_take_commands(env, robot):
         module.SendCommand("MoveActiveJoints goal 0 0")
 
 
+@pytest.mark.stress
 def test_helpers_take_their_modules_with_them(env, robot):
     helper = ravemj.interfaces.BaseManipulation(robot, plannername="nosuch", maxvelmult=0.5)
     assert [one.GetXMLId() for one in env.GetModules()] == ["BaseManipulation"]

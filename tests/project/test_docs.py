@@ -25,7 +25,7 @@ def blocks(page: Path, language: str) -> list[str]:
 @pytest.mark.parametrize(
     "page",
     [
-        *one_in(3, [page for page in PAGES if page.stem not in {*tutorial.PAGES, "regions", "sensors"}]),
+        *one_in(5, [page for page in PAGES if page.stem not in {*tutorial.PAGES, "regions", "sensors"}]),
         *(pytest.param(REPOSITORY / "docs" / name, marks=pytest.mark.stress) for name in ("regions.md", "sensors.md")),
     ],
     ids=lambda page: page.name,
@@ -101,7 +101,7 @@ def sequences() -> list[object]:
             found.setdefault(tuple(line for line in lines if (line,) not in found), page.name)
     found.pop((), None)
     first = {"README.md", "CONTRIBUTING.md"}  # the commands of other pages take minutes
-    few = [lines for lines, page in found.items() if page == "cli.md" and not lines[0].startswith("ravemj grasp")][::3]
+    few = [lines for lines, page in found.items() if page == "cli.md" and not lines[0].startswith("ravemj grasp")][::6]
 
     def is_quick(lines: tuple[str, ...], page: str) -> bool:
         return (page in first or lines in few) and not lines[0].removeprefix("ravemj ").startswith(LONG)

@@ -27,6 +27,7 @@ def run(tmp_path, script):
     return done.returncode, done.stdout
 
 
+@pytest.mark.stress
 def test_no_thread_computes_any_more(tmp_path):
     script = """
 count = 0

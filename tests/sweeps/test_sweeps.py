@@ -14,7 +14,7 @@ from pathlib import Path
 import jobs
 import numpy as np
 import pytest
-from conftest import MODELS
+from conftest import MODELS, one_in
 from hypothesis import given
 from hypothesis import strategies as st
 from strategies import examples
@@ -52,9 +52,7 @@ def files(folder):
     return {path.name: path.read_bytes() for path in sorted((folder / "shards").glob("*.npz"))}
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.stress] if name == "pictures" else []) for name in JOBS]
-)
+@pytest.mark.parametrize("name", one_in(3, list(JOBS)))
 def test_shards_and_executors_do_not_change_numbers(name, tmp_path):
     model, what, count, more = JOBS[name]
     whole = ravemj.sweep(model, what, count, tmp_path / "whole", shard=count, **more)
