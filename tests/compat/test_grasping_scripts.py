@@ -52,6 +52,7 @@ def gmodel(env, tables, monkeypatch):
     return gmodel
 
 
+@pytest.mark.stress
 def test_simplegrasping(env, gmodel):
     robot, target = gmodel.robot, gmodel.target
     basemanip, taskmanip = interfaces.BaseManipulation(robot), interfaces.TaskManipulation(robot)

@@ -31,7 +31,7 @@ def expectation(name: str) -> dict:
 
 
 @pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
-@pytest.mark.parametrize("name", one_in(2, rows()))
+@pytest.mark.parametrize("name", one_in(4, rows()))
 def test_model(name, monkeypatch):
     monkeypatch.setenv("OPENRAVE_DATA", str(CORPUS / "models" / "rdiankov+openrave" / "src"))
     expected = expectation(name)

@@ -251,7 +251,15 @@ def test_without_a_picture_the_page_is_shown_all_the_same(kernel, env, monkeypat
     assert "<object data=" in data["text/html"]
 
 
-@pytest.mark.parametrize(("name", "kind"), [("a.webp", "img"), ("a.gif", "img"), ("a.mp4", "video"), ("a.avi", None)])
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("a.webp", "img"),
+        ("a.mp4", "video"),
+        pytest.param("a.gif", "img", marks=pytest.mark.stress),
+        pytest.param("a.avi", None, marks=pytest.mark.stress),
+    ],
+)
 def test_the_path_of_a_video_shows_the_video(env, tmp_path, name, kind):
     path = ravemj.record(env, tmp_path / name, [(0, [0, 0]), (0.1, [1, 0])], width=64, height=48, fps=10)
     assert path == tmp_path / name

@@ -352,7 +352,8 @@ def test_controls_do_not_cover_each_other(desk, size):
     assert_apart(desk.page, "#motion, #tools, #joints, #modes, .wheel", 7)
 
 
-@pytest.mark.parametrize("is_mobile", one_in(2, [True, False]))
+@pytest.mark.stress
+@pytest.mark.parametrize("is_mobile", [True, False])
 def test_on_a_small_phone_the_tools_and_the_sliders_leave_the_wheels_free(desk, is_mobile):
     size = {"width": 320, "height": 480}
     with desk.context.browser.new_context(viewport=size, has_touch=True, is_mobile=is_mobile) as context:

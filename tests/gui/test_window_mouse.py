@@ -120,7 +120,7 @@ CAMERA_ROWS = {
 }
 
 
-@pytest.mark.parametrize("row", one_in(3, list(CAMERA_ROWS)))
+@pytest.mark.parametrize("row", one_in(6, list(CAMERA_ROWS)))
 def test_camera_mode(desk, row):
     gesture, judge = CAMERA_ROWS[row]
     await_arms(desk)
