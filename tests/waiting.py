@@ -13,10 +13,11 @@ PATIENCE = 120.0
 
 def await_that(condition: Callable[[], object], otherwise: str = "it does not come") -> None:
     """Wait until a condition holds; fail with a message where it never does."""
-    end = time.monotonic() + PATIENCE
+    end, pause = time.monotonic() + PATIENCE, 0.002
     while not condition():
         assert time.monotonic() < end, otherwise
-        time.sleep(0.05)
+        time.sleep(pause)
+        pause = min(2 * pause, 0.05)
 
 
 class Hang(BaseException):

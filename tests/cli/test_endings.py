@@ -110,6 +110,7 @@ REDIRECTED = [
 ]
 
 
+@pytest.mark.stress
 @POSIX
 @pytest.mark.parametrize(
     ("words", "expected"),
@@ -226,6 +227,7 @@ def played(folder: Path, name: str) -> subprocess.Popen[str]:
     return process
 
 
+@pytest.mark.stress
 @POSIX
 def test_a_terminal_that_closes_leaves_nothing(tmp_path):
     heed_interrupts()
@@ -237,6 +239,7 @@ def test_a_terminal_that_closes_leaves_nothing(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.stress
 @POSIX
 def test_the_next_one_removes_what_a_killed_one_left(tmp_path):
     with played(tmp_path, "frames") as process:

@@ -59,6 +59,7 @@ def test_regions_of_a_file(folder):
     assert panda_after(folder)[-1][:3, 3] == pytest.approx([0.4, 0.2, 0.5], abs=1e-3)
 
 
+@pytest.mark.stress
 def test_a_region_out_of_reach_says_so(folder):
     done = ravemj_command(folder, "plan", "panda", "--near", "2,0,0", "-o", "plan.png")
     why = r"ravemj: error: no motion: no goal: out of reach: 200 of 200 poses \(.* 1.1\d* m away\) \(region 'near'\)\n"

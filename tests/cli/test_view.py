@@ -42,6 +42,7 @@ def test_one_address_is_printed_and_a_signal_ends_it(folder, options, number, en
             assert connection.protocol.close_code == CloseCode.GOING_AWAY, "the page is told"
 
 
+@pytest.mark.stress
 def test_the_port_is_the_one_that_is_asked_for_or_an_error(folder):
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
@@ -53,6 +54,7 @@ def test_the_port_is_the_one_that_is_asked_for_or_an_error(folder):
         assert page.url.startswith(f"http://127.0.0.1:{port}/")
 
 
+@pytest.mark.stress
 def test_another_host_is_served_with_a_warning(folder):
     with served(folder, "--web", "--host", "0.0.0.0") as page:
         port = page.url.split(":")[2].split("/")[0]
@@ -65,6 +67,7 @@ def test_another_host_is_served_with_a_warning(folder):
         assert "ravemj: warning: browsers of other machines can come here" in warning
 
 
+@pytest.mark.stress
 def test_the_robot_of_the_option_is_looked_at_and_selected(folder):
     with Served(folder, "view", "--web", "workshop", "--robot", "scara") as page:
         address = page.url.replace("http", "ws", 1) + "socket"
@@ -121,7 +124,13 @@ def test_what_cannot_be_shown_is_one_line(folder, options, code, message):
     assert message in done.stderr
 
 
-@pytest.mark.parametrize("how", [pytest.param(how, marks=NEEDS_A_SCREEN) for how in ("closed", "interrupted")])
+@pytest.mark.parametrize(
+    "how",
+    [
+        pytest.param("closed", marks=NEEDS_A_SCREEN),
+        pytest.param("interrupted", marks=[*NEEDS_A_SCREEN, pytest.mark.stress]),
+    ],
+)
 def test_a_window_where_there_is_a_display(display, folder, how):
     with Started(display, folder, "-m", "ravemj", "view", "env.xml") as command:
         window = display.await_window()

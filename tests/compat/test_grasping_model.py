@@ -117,6 +117,7 @@ def test_stored_poses_are_those_of_the_simulation(gmodel):
         assert mindist == pytest.approx(grasp[gmodel.graspindices["forceclosure"][0]], rel=1e-6)
 
 
+@pytest.mark.stress
 def test_processes_do_not_change_the_table(env, gmodel):
     alone = few(gmodel).grasps
     other = model_of(env)
@@ -341,6 +342,7 @@ def test_ctrl_c_keeps_what_is_done(env, gmodel, database, monkeypatch, caplog):
     assert files(database) == [os.path.relpath(other.getfilename(True), database)]
 
 
+@pytest.mark.stress
 def test_other_settings_start_anew(env, gmodel, monkeypatch):
     interrupted(gmodel, monkeypatch, 40)
     few(gmodel)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import one_in
 
 import ravemj
 from ravemj import CollisionReport, IkParameterization, databases, interfaces
@@ -35,8 +36,15 @@ class Options:
     boxdelta = 0.04
 
 
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory):
+    """OpenRAVE's folder of those tests that only load the table, which the first one writes."""
+    return tmp_path_factory.mktemp("tables")
+
+
 @pytest.fixture
-def gmodel(env):
+def gmodel(env, tables, monkeypatch):
+    monkeypatch.setenv("OPENRAVE_HOME", str(tables))
     gmodel = databases.grasping.GraspingModel(env.GetRobots()[0], env.GetKinBody("mug"))
     if not gmodel.load():
         gmodel.autogenerate(Options)
@@ -44,6 +52,7 @@ def gmodel(env):
     return gmodel
 
 
+@pytest.mark.stress
 def test_simplegrasping(env, gmodel):
     robot, target = gmodel.robot, gmodel.target
     basemanip, taskmanip = interfaces.BaseManipulation(robot), interfaces.TaskManipulation(robot)
@@ -97,6 +106,7 @@ def test_fastgrasping(env):
     assert any(env.CheckCollision(link, target) for link in gmodel.manip.GetChildLinks())
 
 
+@pytest.mark.stress
 def test_an_arm_keeps_grasps_with_noise(env):
     """The base of an arm is far from the hand; noise of the target does not swing it."""
     gmodel = databases.grasping.GraspingModel(env.GetRobots()[0], env.GetKinBody("mug"))
@@ -143,7 +153,7 @@ def test_graspplanning(env, gmodel):
     assert target.GetTransform() == pytest.approx(Tdest, abs=1e-3)
 
 
-@pytest.mark.parametrize("lacks", ["zeros", "columns"])
+@pytest.mark.parametrize("lacks", one_in(2, ["zeros", "columns"]))
 def test_rows_without_a_pose_are_simulated(gmodel, lacks):
     """The pose is that of the table, which was simulated in the same way."""
     robot, target = gmodel.robot, gmodel.target
@@ -171,6 +181,7 @@ def test_rows_without_a_pose_are_simulated(gmodel, lacks):
     assert T[:3, 3] == pytest.approx(expected[:3, 3], abs=1.2e-3)  # OpenRAVE moves the hand back by steps of 1 mm
 
 
+@pytest.mark.stress
 def test_constraintplanning(env, gmodel):
     """A mug that stands a little inside of the table when it is grabbed moves upright, and along one plane."""
     robot, target = gmodel.robot, gmodel.target

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import ravemj_command
-from conftest import MODELS, TESTS
+from conftest import MODELS, TESTS, one_in
 
 SCRIPTS = TESTS / "scripts"
 NAMES = sorted(path.stem for path in SCRIPTS.glob("*.py"))
@@ -150,7 +150,7 @@ def agree(text: str, expected: str) -> bool:
     )
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in NEIGHBOURS])
+@pytest.mark.parametrize("name", one_in(2, [name for name in NAMES if name not in NEIGHBOURS]))
 def test_script(name, folder):
     options = ["--py2"] if name.endswith("_py2") else []
     done = ravemj_command(folder, "run", *options, f"{name}.py")

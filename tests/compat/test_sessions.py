@@ -113,6 +113,7 @@ def test_run_stays_in_ipython(folder):
     assert leave(terminal, 4)[1] == 0
 
 
+@pytest.mark.stress
 def test_run_lets_scripts_open_ipython(folder):
     text = (folder / "myscript.py").read_text() + "    import IPython\n    IPython.embed()\n    print('after')\n"
     (folder / "embedding.py").write_text(text)
@@ -136,6 +137,7 @@ def test_shell_has_env_robot_and_viewer(folder):
     assert "Traceback" not in printed
 
 
+@pytest.mark.stress
 def test_shell_completes_at_a_real_prompt(folder):
     terminal = on_terminal(folder, "-m", "ravemj", "shell", "env.xml", simple=False, PROMPT_TOOLKIT_NO_CPR="1")
     terminal.expect("In .*1.*: ")

@@ -418,6 +418,7 @@ def test_a_video_of_simulation_time(env, robot, tmp_path):
     assert env.GetModules() == []
 
 
+@pytest.mark.stress
 def test_a_script_that_ends_without_stop_completes_its_video(tmp_path):
     (tmp_path / "fails.py").write_text(
         """

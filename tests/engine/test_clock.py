@@ -228,6 +228,7 @@ print("done")
     assert (run.returncode, run.stdout, run.stderr) == (0, "done\n", "")
 
 
+@pytest.mark.stress
 def test_python_ends_after_the_thread(tmp_path):
     """A thread that came back from MuJoCo later crashed the process, in one run of six."""
     script = tmp_path / "script.py"

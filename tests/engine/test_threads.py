@@ -107,7 +107,8 @@ def test_readers_see_whole_states(env):
         await_that(lambda: env.GetSimulationTime() > 0)
 
 
-@pytest.mark.parametrize("duration", [DURATION, pytest.param(3.0, marks=pytest.mark.stress)])
+@pytest.mark.stress
+@pytest.mark.parametrize("duration", [DURATION, 3.0])
 def test_what_is_set_under_the_lock_is_seen_together(env, duration):
     """A box is always 1 m above the pendulum's tip, whoever looks, while other bodies come and go, also in copies."""
     robot = env.GetRobots()[0]

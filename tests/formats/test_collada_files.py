@@ -193,6 +193,7 @@ print(peak() - before)
 """
 
 
+@pytest.mark.stress
 @pytest.mark.skipif(not os.access("/proc/self/clear_refs", os.W_OK), reason="only Linux says how much memory was held")
 def test_memory_is_bounded_by_the_size_of_the_file(tmp_path):
     script = runpy.run_path(str(MODELS.parent / "scripts" / "models" / "scara.py"))
@@ -222,7 +223,7 @@ def names(zae, monkeypatch) -> dict[str, str]:
 
 
 @pytest.mark.parametrize(
-    "way", one_in(3, ["a file", "an archive", "a URI", "an id", "a relative path and data", "xml"])
+    "way", one_in(6, ["a file", "an archive", "a URI", "an id", "a relative path and data", "xml"])
 )
 def test_commands(way, names, capsys, tmp_path):
     name = names[way]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from agreement import CORPUS, NEEDS_THE_CORPUS, compare
+from conftest import one_in
 
 pytestmark = [*NEEDS_THE_CORPUS, pytest.mark.corpus]
 LEFT_OUT = {
@@ -30,7 +31,7 @@ def expectation(name: str) -> dict:
 
 
 @pytest.mark.filterwarnings("ignore::ravemj.RavemjWarning")
-@pytest.mark.parametrize("name", rows())
+@pytest.mark.parametrize("name", one_in(4, rows()))
 def test_model(name, monkeypatch):
     monkeypatch.setenv("OPENRAVE_DATA", str(CORPUS / "models" / "rdiankov+openrave" / "src"))
     expected = expectation(name)

@@ -256,6 +256,7 @@ class TestFound:
 
         assert size(200) < 3 * size(100)
 
+    @pytest.mark.stress
     def test_long_chains_of_followers(self, run):
         links = "".join(f"<Body name='l{i}'/>" for i in range(1202))
         joint = "<Joint name='j{0}' mimic_pos='{1}'><Body>l0</Body><Body>l{0}</Body></Joint>"
@@ -275,6 +276,7 @@ class TestFound:
             ravemj.load(tmp_path / MAIN)
         assert caught.value.source == (str(tmp_path / MAIN), links, None)
 
+    @pytest.mark.stress
     def test_many_misspelt_tags(self, run):
         assert run(body(LINK + "<Bodey/>" * 100_000)).links == 1
 

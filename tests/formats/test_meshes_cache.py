@@ -337,6 +337,7 @@ def _many_reads(folder, mesh, results):
     results.put(digests)
 
 
+@pytest.mark.stress
 def test_many_processes_at_once(tmp_path):
     context = multiprocessing.get_context("spawn")
     results = context.Queue()

@@ -136,6 +136,7 @@ def test_repeated_nodes(refused):
     refused("faces.iv", f"#Inventor V2.1 ascii\n{faces}\n{doubling}", "corners of polygons")
 
 
+@pytest.mark.stress
 def test_repeated_prototypes(refused):
     text = "PROTO P0 [ ] { Shape { } }" + "".join(
         f"PROTO P{k} [ ] {{ Group {{ children [ P{k - 1} {{ }} P{k - 1} {{ }} ] }} }}" for k in range(1, 40)
@@ -153,6 +154,7 @@ def test_repeated_files(tmp_path, refused):
     )
 
 
+@pytest.mark.stress
 def test_repeated_collada_nodes(refused):
     nodes = "".join(
         f'<node id="n{k}"><instance_node url="#n{k - 1}"/><instance_node url="#n{k - 1}"/></node>' for k in range(1, 40)
@@ -192,6 +194,7 @@ def test_counts_beyond_all_memory(refused, suffix):
     refused("huge" + suffix, content)
 
 
+@pytest.mark.stress
 def test_many_corners_are_cut_in_time(tmp_path):
     rng = np.random.default_rng(0)
     points = "".join(f"v {x:.3f} {y:.3f} {z:.3f}\n" for x, y, z in rng.normal(size=(5000, 3)))

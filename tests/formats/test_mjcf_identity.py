@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import one_in
 from hypothesis import given
 from hypothesis import strategies as st
 from strategies import examples
@@ -45,8 +46,10 @@ def read(path: Path):
     return reading
 
 
-@pytest.mark.parametrize("options", OPTIONS)
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("options", one_in(2, list(OPTIONS)))
+@pytest.mark.parametrize(
+    "model", [pytest.param(model, marks=[pytest.mark.stress] if "workshop" in model else []) for model in MODELS]
+)
 def test_what_is_converted_comes_back(model, options, tmp_path):
     (tmp_path / "again").mkdir()
     first = convert(ROOT / model, tmp_path / "model.xml", **OPTIONS[options])

@@ -508,6 +508,7 @@ def test_a_xacro_is_expanded_for_its_user(tmp_path, name):
     assert body.joints[0].axes[0].upper == pytest.approx(np.pi / 2)
 
 
+@pytest.mark.stress
 def test_a_xacro_that_never_ends_is_stopped(tmp_path, monkeypatch):
     pytest.importorskip("xacrodoc", reason="needs the extra xacro")
     monkeypatch.setattr("ravemj.formats.urdf.xacro.LIMIT", 1.0)

@@ -59,7 +59,7 @@ def losses(kind: str, name: str) -> set[str]:
 
 
 @pytest.mark.parametrize("kind", NAMES)
-@pytest.mark.parametrize("name", INPUTS)
+@pytest.mark.parametrize("name", one_in(4, INPUTS))
 def test_inputs_survive(kind, name, tmp_path, monkeypatch):
     monkeypatch.delenv("OPENRAVE_DATA", raising=False)
     reading = read_file(REPOSITORY / name)
@@ -71,7 +71,7 @@ def test_inputs_survive(kind, name, tmp_path, monkeypatch):
 @pytest.mark.corpus
 @pytest.mark.skipif(not CORPUS.is_dir(), reason="there are no published models in ../shared/corpus")
 @pytest.mark.parametrize("kind", NAMES)
-@pytest.mark.parametrize("name", one_in(16, corpus()))
+@pytest.mark.parametrize("name", one_in(32, corpus()))
 def test_published_models_survive(kind, name, tmp_path, monkeypatch):
     monkeypatch.setenv("OPENRAVE_DATA", str(CORPUS / "models" / "rdiankov+openrave" / "src"))
     reading = read_file(CORPUS / "models" / name)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from browsers import NEEDS_A_BROWSER
 from command_line import run
-from conftest import MODELS
+from conftest import MODELS, one_in
 from PIL import Image
 from waiting import await_that
 
@@ -300,7 +300,7 @@ class TestInABrowser:
     pytestmark = NEEDS_A_BROWSER
 
     @pytest.mark.filterwarnings("ignore:.*follows several joints")
-    @pytest.mark.parametrize("equation", ["", "2*turn-0.3", "turn*turn", "sin(turn)+0.5*slide"])
+    @pytest.mark.parametrize("equation", one_in(4, ["sin(turn)+0.5*slide", "", "2*turn-0.3", "turn*turn"]))
     def test_sliders_move_the_links_as_forward_kinematics_does(self, opened, equation):
         env, random = moved(equation), np.random.default_rng(3)
         robot = env.GetRobots()[0]
@@ -316,6 +316,7 @@ class TestInABrowser:
             np.testing.assert_allclose(shown[1:], np.array(robot.GetLinkTransformations())[1:, :3], atol=exact)
             np.testing.assert_allclose(robot.GetDOFValues(), values, atol=1e-6)
 
+    @pytest.mark.stress
     def test_frames_of_the_links_are_shown(self, opened):
         env = moved("")
         player = opened(env.animation().html)
@@ -329,8 +330,8 @@ class TestInABrowser:
         np.testing.assert_allclose(axes / length, T_world_link[:, :3, :3].transpose(0, 2, 1), atol=1e-5)
         await_that(lambda: player.page.evaluate("ravemj.renderer.groups.get('frames')?.strokes.length") == 1)
 
-    @pytest.mark.parametrize("viewport", [(390, 844), (844, 390), (600, 650)])
-    @pytest.mark.parametrize("camera", [None, NEAR])
+    @pytest.mark.parametrize("viewport", one_in(3, [(390, 844), (844, 390), (600, 650)]))
+    @pytest.mark.parametrize("camera", one_in(2, [None, NEAR]))
     def test_narrow_pages_show_all_that_a_picture_shows(self, env, robot, opened, viewport, camera):
         robot.SetDOFValues([1.2, 0])
         player = opened(env.animation(camera=camera).html, viewport=viewport)
@@ -448,6 +449,7 @@ class TestInABrowser:
         assert player.camera().T_world_camera == pytest.approx(first)
         assert page.troubles == []
 
+    @pytest.mark.stress
     def test_two_fingers_zoom(self, env, opened):
         player = opened(env.animation(swing(env)).html, has_touch=True)
         session = player.page.context.new_cdp_session(player.page)
@@ -457,6 +459,7 @@ class TestInABrowser:
         await_that(lambda: player.page.evaluate("ravemj.view.distance < ravemj.first.distance"))
         assert player.page.evaluate("ravemj.view.distance / ravemj.first.distance") == pytest.approx(0.5)
 
+    @pytest.mark.stress
     def test_a_context_that_was_lost_and_restored_shows_everything_again(self, env, robot, opened):
         motion = swing(env)
         player = opened(env.animation(motion, background=[0, 0, 0.4]).html)
@@ -477,6 +480,7 @@ class TestInABrowser:
         assert_same_silhouette(player, env)
         assert player.page.troubles == []
 
+    @pytest.mark.stress
     def test_pictures_are_coarse_while_they_move_and_crisp_at_rest_where_drawing_takes_long(self, env, opened):
         player = opened(env.animation(swing(env)).html)
         width, height = player.page.evaluate("[ravemj.canvas.clientWidth, ravemj.canvas.clientHeight]")
@@ -487,6 +491,7 @@ class TestInABrowser:
         player.page.evaluate("ravemj.isPlaying = false")
         await_that(lambda: player.size() == (width, height), "it does not become crisp")
 
+    @pytest.mark.stress
     def test_without_webgl_the_page_says_so(self, env, opened):
         player = opened(env.animation().html, "HTMLCanvasElement.prototype.getContext = () => null")
         assert "no WebGL2" in player.page.inner_text("#error")

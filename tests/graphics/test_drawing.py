@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from conftest import one_in
 from test_rendering_pictures import GL, LIGHT, SKYBOX, both, camera_with_roll, near_an_edge, open_as, state_of
 
 from ravemj.graphics.rendering import Camera, Pinhole
@@ -39,7 +40,7 @@ def centres():
 
 
 @both
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", one_in(3, range(3)))
 @pytest.mark.parametrize("size", [1, 4, 7.0])
 def test_points_are_squares_of_that_many_pixels_where_the_camera_projects_them(how, seed, size):
     rng = np.random.default_rng(seed)
@@ -54,7 +55,7 @@ def test_points_are_squares_of_that_many_pixels_where_the_camera_projects_them(h
 
 
 @both
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", one_in(3, range(3)))
 @pytest.mark.parametrize("width", [1, 3, 6])
 def test_lines_have_constant_width_along_their_projection(how, seed, width):
     rng = np.random.default_rng(seed)
@@ -221,7 +222,7 @@ def test_drawings_and_bodies_hide_each_other(how):
 
 
 @both
-@pytest.mark.parametrize("shadows", [False, True])
+@pytest.mark.parametrize("shadows", one_in(2, [False, True]))
 def test_alpha_mixes_with_what_is_behind(how, shadows):
     light = '<light type="directional" dir="0 0 1" diffuse="0 0 0" specular="0 0 0" castshadow="true"/>'
     geoms = light + '<geom size=".01" pos="0 0 -1"/>'  # far from where it is looked at

@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 from browsers import NEEDS_A_BROWSER
+from conftest import one_in
 from test_animation import opened  # noqa: F401 - a fixture
 from test_rendering_pictures import GL, both, open_as, state_of
 
@@ -30,7 +31,7 @@ def loaded(name):
     return env
 
 
-@pytest.fixture(params=MODELS)
+@pytest.fixture(params=one_in(3, MODELS))
 def env(request):
     env = loaded(request.param)
     yield env
@@ -50,7 +51,7 @@ def apart(one, other, pixels):
 
 
 @both
-@pytest.mark.parametrize("name", ["panda", "puma560", "scara"])
+@pytest.mark.parametrize("name", one_in(3, ["panda", "puma560", "scara"]))
 @pytest.mark.parametrize("above", [False, True])
 def test_the_lit_side_of_each_robot_has_its_colour(how, name, above):
     env = loaded(name)
@@ -94,7 +95,7 @@ def test_no_colour_up_to_95_percent_is_clipped_by_diffuse_light(seed):
 
 @both
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("turn", ["0 0 0", "70 20 0", "30 -60 45"])
+@pytest.mark.parametrize("turn", one_in(3, ["30 -60 45", "0 0 0", "70 20 0"]))
 def test_highlights_clip_a_fiftieth_of_a_light_link_at_most(how, shape, turn):
     geom = f'<geom type="{shape}" size=".1 .2 .15" euler="{turn}" rgba=".95 .95 .95 1"/>'
     model, data = state_of(geom)
@@ -161,7 +162,7 @@ def test_rays_look_like_opengl(env, how):
 class TestInABrowser:
     pytestmark = NEEDS_A_BROWSER
 
-    @pytest.mark.parametrize("shadows", [False, True])
+    @pytest.mark.parametrize("shadows", one_in(2, [True, False]))
     def test_a_page_looks_like_a_picture(self, env, opened, shadows):  # noqa: F811
         player = opened(env.animation(shadows=shadows).html)
         picture = player.picture()
@@ -427,6 +428,7 @@ def test_mujoco_s_own_renderer_shows_the_shadow_of_a_converted_file(tmp_path, ho
     np.testing.assert_array_equal(model.body_mass, runtime.body_mass)
 
 
+@pytest.mark.stress
 def test_the_command_line_lists_the_choices(tmp_path, capsys):
     from ravemj.cli import main
 

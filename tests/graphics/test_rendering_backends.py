@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import REPOSITORY
+from conftest import REPOSITORY, one_in
 from waiting import PATIENCE
 
 from ravemj.errors import RenderingError
@@ -80,7 +80,7 @@ def test_reports_cover_every_backend_and_explain(reports):
         assert bool(report.install) != report.works
 
 
-@pytest.mark.parametrize("close", [True, False])
+@pytest.mark.parametrize("close", one_in(2, [True, False]))
 @pytest.mark.parametrize("backend", GL_BACKENDS)
 def test_each_backend_after_the_import_of_mujoco(reports, backend, close):
     needs(reports, backend)
@@ -100,9 +100,10 @@ def test_osmesa_where_libegl_is_missing(reports):
     assert python(HIDE.format(words=["EGL"]) + DRAW + "print(draw().backend)") == "osmesa"
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize(
     "broken",
-    [{"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent"}, {"LIBGL_DRIVERS_PATH": "/nonexistent"}],
+    one_in(2, [{"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent"}, {"LIBGL_DRIVERS_PATH": "/nonexistent"}]),
     ids=["no vendor", "no driver"],
 )
 def test_osmesa_where_egl_is_there_and_does_not_work(reports, broken):

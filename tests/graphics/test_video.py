@@ -463,6 +463,7 @@ def test_an_interrupt_while_waiting_for_the_encoder(tmp_path, monkeypatch, at_th
     assert content(tmp_path) == {}
 
 
+@pytest.mark.stress
 @pytest.mark.skipif(not hasattr(signal, "SIGXFSZ"), reason="POSIX limits")
 def test_a_disk_that_fills(target, old):
     script = """

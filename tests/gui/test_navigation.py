@@ -5,7 +5,7 @@ import threading
 
 import numpy as np
 import pytest
-from conftest import REPOSITORY
+from conftest import REPOSITORY, one_in
 from test_interaction import ASLANT, FROM_FRONT, Hand
 
 import ravemj
@@ -390,7 +390,7 @@ def test_escape_closes_the_help_and_leaves_the_mode(hand):
     assert hand.gui.overlay().tree
 
 
-@pytest.mark.parametrize("size", [(320, 240), (480, 320), (655, 500), (960, 720), (1920, 1080)])
+@pytest.mark.parametrize("size", one_in(5, [(320, 240), (480, 320), (655, 500), (960, 720), (1920, 1080)]))
 def test_a_window_has_all_of_the_help_which_scrolls_and_goes_away_by_a_click(hand, size):
     hand.gui.handle(Resize(*size))
     hand.press_key("?")

@@ -15,7 +15,7 @@ from types import ModuleType, SimpleNamespace
 import numpy as np
 import pytest
 from browsers import NEEDS_A_BROWSER
-from conftest import MODELS
+from conftest import MODELS, one_in
 from IPython.core.formatters import HTMLFormatter
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
@@ -66,7 +66,7 @@ def shown(env, name):
     return [output.data for output in captured.outputs]
 
 
-@pytest.mark.parametrize("name", ["web", "qtcoin", "qtosg"])
+@pytest.mark.parametrize("name", one_in(3, ["web", "qtcoin", "qtosg"]))
 def test_the_page_is_shown_in_the_cell(kernel, env, name, monkeypatch):
     monkeypatch.delenv("DISPLAY", raising=False)
     (data,) = shown(env, name)
@@ -104,12 +104,12 @@ def test_the_notebooks_server_leads_to_the_page(proxied, env):
     ("headers", "origin", "is_let_in"),
     [
         ({"Host": "hub.example"}, "https://hub.example", True),
-        ({"Host": "hub.example:8000"}, "http://hub.example:8000", True),
+        pytest.param({"Host": "hub.example:8000"}, "http://hub.example:8000", True, marks=pytest.mark.stress),
         ({"X-Forwarded-Host": "hub.example, inner"}, "https://hub.example", True),
         ({"Host": "hub.example"}, "https://evil.example", False),
-        ({"X-Forwarded-Host": "hub.example"}, "https://evil.example", False),
-        ({}, "https://hub.example", False),
-        ({"X-Forwarded-Host": ""}, "null", False),
+        pytest.param({"X-Forwarded-Host": "hub.example"}, "https://evil.example", False, marks=pytest.mark.stress),
+        pytest.param({}, "https://hub.example", False, marks=pytest.mark.stress),
+        pytest.param({"X-Forwarded-Host": ""}, "null", False, marks=pytest.mark.stress),
     ],
 )
 def test_pages_of_the_notebooks_server_only_are_let_in(proxied, env, headers, origin, is_let_in):
@@ -176,6 +176,7 @@ class Quiet(http.server.SimpleHTTPRequestHandler):
         pass
 
 
+@pytest.mark.stress
 @NEEDS_A_BROWSER[0]
 @NEEDS_A_BROWSER[1]
 @NEEDS_A_BROWSER[2]
@@ -206,7 +207,7 @@ def test_a_saved_notebook_shows_the_page_while_its_server_answers_and_a_picture_
         server.shutdown()
 
 
-@pytest.mark.parametrize("variable", REMOTE)
+@pytest.mark.parametrize("variable", one_in(4, list(REMOTE)))
 def test_where_no_port_reaches_the_browser_the_scene_draws_itself(kernel, env, monkeypatch, variable):
     monkeypatch.delenv("DISPLAY", raising=False)
     monkeypatch.setenv(variable, "/user/maria/")
@@ -250,7 +251,15 @@ def test_without_a_picture_the_page_is_shown_all_the_same(kernel, env, monkeypat
     assert "<object data=" in data["text/html"]
 
 
-@pytest.mark.parametrize(("name", "kind"), [("a.webp", "img"), ("a.gif", "img"), ("a.mp4", "video"), ("a.avi", None)])
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("a.webp", "img"),
+        ("a.mp4", "video"),
+        pytest.param("a.gif", "img", marks=pytest.mark.stress),
+        pytest.param("a.avi", None, marks=pytest.mark.stress),
+    ],
+)
 def test_the_path_of_a_video_shows_the_video(env, tmp_path, name, kind):
     path = ravemj.record(env, tmp_path / name, [(0, [0, 0]), (0.1, [1, 0])], width=64, height=48, fps=10)
     assert path == tmp_path / name

@@ -132,7 +132,12 @@ class Window(Limbs):
         return list(self.desk.lines)
 
 
-@pytest.fixture(params=[pytest.param("page", marks=NEEDS_A_BROWSER), pytest.param("window", marks=NEEDS_A_SCREEN)])
+@pytest.fixture(
+    params=[
+        pytest.param("page", marks=NEEDS_A_BROWSER),
+        pytest.param("window", marks=[*NEEDS_A_SCREEN, pytest.mark.stress]),
+    ]
+)
 def limbs(request, tmp_path):
     """The biped, seen from its right, in interaction mode."""
     if request.param == "page":
@@ -173,6 +178,7 @@ def test_pinned_feet_stay_while_a_hand_is_pulled(limbs):
     limbs.let_go(beyond)
 
 
+@pytest.mark.stress
 def test_without_pins_the_base_stays(limbs):
     base, start = limbs.base(), limbs.hand()
     target = start + 0.05 * RIGHT - 0.05 * DOWN
@@ -182,6 +188,7 @@ def test_without_pins_the_base_stays(limbs):
     limbs.let_go(target)
 
 
+@pytest.mark.stress
 def test_the_button_pins_the_selected_limb_and_takes_the_pin_out(limbs):
     desk = limbs.desk
     desk.click(desk.at(middle(desk.robot, "LFoot")))

@@ -135,6 +135,7 @@ def test_without_a_motion_a_video_is_what_happens_until_it_is_stopped(viewer, ro
     assert viewer.interaction.controls.all()[1].label == "Record a video (MP4)"
 
 
+@pytest.mark.stress
 def test_another_motion_ends_a_video(viewer, tmp_path):
     viewer.play(ravemj.Motion.line([0, 0], [np.pi, 0], 600.0))
     record(viewer)
@@ -145,6 +146,7 @@ def test_another_motion_ends_a_video(viewer, tmp_path):
     assert 3 <= len(imageio.v3.imread(file)) < 30 * 600
 
 
+@pytest.mark.stress
 def test_a_viewer_that_closes_ends_its_video_and_leaves_whole_files(viewer, tmp_path, monkeypatch):
     monkeypatch.setattr(recorder, "_LONGEST_END", PATIENCE)
     record(viewer)

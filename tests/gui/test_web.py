@@ -332,6 +332,7 @@ def test_pages_have_cameras_of_their_own_and_share_what_is_selected(env, viewer)
             await_that(lambda page=page: np.abs(page.settled().astype(int) - expected).mean() < 0.1)
 
 
+@pytest.mark.stress
 def test_a_page_that_comes_back_has_the_view_that_it_had(viewer):
     with Page(viewer, "one") as page:
         page.escape()
@@ -434,6 +435,7 @@ def test_deep_messages_do_not_let_finalizers_fail():
     assert len(finalized) == len(rounds)
 
 
+@pytest.mark.stress
 def test_broken_pages_harm_nobody(viewer, caplog):
     with Page(viewer) as page, Page(viewer) as other:
         page.settled()
@@ -543,6 +545,7 @@ def test_a_second_viewer_takes_the_place_of_the_first(env, viewer):
     assert not viewer.is_open
 
 
+@pytest.mark.stress
 def test_strangers_that_say_nothing_do_not_keep_a_viewer_open(env, monkeypatch):
     monkeypatch.setattr(server, "_HANDSHAKE", 10 * PATIENCE)
     env.SetViewer("web")
@@ -553,6 +556,7 @@ def test_strangers_that_say_nothing_do_not_keep_a_viewer_open(env, monkeypatch):
             env.Destroy()
 
 
+@pytest.mark.stress
 def test_a_page_that_stands_still_does_not_keep_a_viewer_open(env, viewer):
     """It takes nothing more from its socket, and does not answer when it is told that the viewer closes."""
     connection = socket.create_connection(("127.0.0.1", viewer.server.port))
@@ -670,6 +674,7 @@ def test_messages(text, message):
             parse(json.dumps({key: value for key, value in fields.items() if key != name}))
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("pictures", [3, pytest.param(1000, marks=pytest.mark.stress)])
 def test_a_script_a_hand_and_an_onlooker_share_one_environment(env, viewer, pictures):
     """The script turns one joint, the hand another one, until all have been served; nothing is torn."""

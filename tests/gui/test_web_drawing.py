@@ -352,6 +352,7 @@ class TestWhatIsSeen:
         missing = (expected & ~near(covered)) | (~expected & ~near(is_open))
         return not (missing | (~is_open & ~near(expected)) | (~covered & ~near(~expected))).any()
 
+    @pytest.mark.stress
     def test_a_point_lands_within_half_a_pixel(self, desk):
         desk.viewer.SetBkgndColor([1, 1, 1])
         places = np.array([[0.3, 0.3, 0.2], [0.2, -0.25, 0.1], [-0.3, 0.1, -0.1]])
@@ -372,6 +373,7 @@ class TestWhatIsSeen:
         await_that(lambda: away() <= 0.5, "points are elsewhere")
         del shown
 
+    @pytest.mark.stress
     @pytest.mark.parametrize("desk", [meshes, transparent], indirect=True)
     def test_pictures_lie_within_half_a_pixel_of_the_servers(self, desk):
         desk.core.look_from(desk.env.renderer.camera_for_stills(4 / 3))
@@ -405,6 +407,7 @@ class TestWhatIsSeen:
         desk.await_picture()
         del shown
 
+    @pytest.mark.stress
     @pytest.mark.parametrize("desk", [workshop], indirect=True)
     @pytest.mark.parametrize(
         ("eye", "focus"),
@@ -430,6 +433,7 @@ class TestWhatIsSeen:
         desk.await_picture()
         del shown
 
+    @pytest.mark.stress
     def test_nothing_is_cut_off_a_ball(self, desk):
         desk.viewer.SetCamera([[0, 0, -1, 4], [1, 0, 0, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
         ball = desk.env.plot3([[1, 0, 0]], 2, [0, 1, 1], 1)  # around the robot, and far in front of it
@@ -471,6 +475,7 @@ class TestWhatIsSeen:
         assert asked
         assert all(url.startswith((desk.viewer.url, "data:")) for url in asked), asked
 
+    @pytest.mark.stress
     def test_behind_a_slow_way_to_the_server_it_needs_few_answers(self, desk, chromium):
         port = desk.viewer.server.port
         with SlowLink(port, rate=3e5, delay=0.03) as link:
@@ -492,6 +497,7 @@ class TestWhatIsSeen:
         assert desk.page.evaluate("drawing.view.position") == pytest.approx(desk.core.view.camera.position, abs=1e-6)
         assert desk.page.evaluate("drawing.acknowledged < drawing.predictedBy")
 
+    @pytest.mark.stress
     def test_pictures_stand_in_while_webgl_is_lost(self, desk):
         assert not desk.page.is_visible("#source")
         for values in ([0.4, 0.3], [0.9, 0.7]):
@@ -509,6 +515,7 @@ class TestWhatIsSeen:
         await_that(lambda: desk.page.evaluate("drawing !== null && drawing.name !== undefined"), "it draws no more")
         desk.await_picture()
 
+    @pytest.mark.stress
     def test_pictures_are_coarse_while_things_move_and_crisp_at_rest_where_drawing_takes_long(self, desk):
         desk.await_picture()
         desk.page.evaluate(
@@ -528,6 +535,7 @@ class TestWhatIsSeen:
         assert set(sizes) == {320, 640}
         desk.await_picture()
 
+    @pytest.mark.stress
     def test_it_shows_pictures_if_the_address_asks_for_them(self, desk):
         desk.page.goto(desk.viewer.url + "?pictures")
         desk.await_picture()

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from browsers import NEEDS_A_BROWSER
 from command_line import Served, ravemj_command
-from conftest import MODELS
+from conftest import MODELS, one_in
 from waiting import PATIENCE, await_that
 from websockets.sync.client import connect
 
@@ -106,6 +106,7 @@ class TestWhoMayShowIt:
             with pytest.raises(ArgumentError, match=r"RAVEMJ_EMBED: is .* should be an origin"):
                 env.serve_viewer()
 
+    @pytest.mark.stress
     def test_the_command_line(self, folder):
         with Served(folder, "view", "--web", "--embed", "https://a.example", "--embed", "https://b", "env.xml") as page:
             assert ancestors(page) == {*USUAL, "https://a.example", "https://b"}
@@ -218,7 +219,7 @@ def frames(page):
 class TestInABrowser:
     pytestmark = NEEDS_A_BROWSER
 
-    @pytest.mark.parametrize("host", ["127.0.0.1", "127.0.0.2"])
+    @pytest.mark.parametrize("host", one_in(2, ["127.0.0.1", "127.0.0.2"]))
     def test_pages_of_others_show_it_only_if_they_are_named(self, page, viewer, host):
         with Around(f'src="{viewer.url}"', host=host) as around:
             said = []
@@ -230,6 +231,7 @@ class TestInABrowser:
                 page.reload()
             frames(page)
 
+    @pytest.mark.stress
     def test_a_script_moves_the_views_of_all_frames(self, page, viewer):
         with Around(*2 * [f'src="{viewer.url}"']) as around:
             page.goto(around.url)
@@ -244,6 +246,7 @@ class TestInABrowser:
                 await_that(lambda: len(viewer._clients) == 2)
                 page.reload()
 
+    @pytest.mark.stress
     def test_a_script_moves_the_views_of_duplicated_tabs(self, page, viewer):
         page.goto(viewer.url)
         page.wait_for_selector("[data-crisp]")
@@ -260,6 +263,7 @@ class TestInABrowser:
     def position(self, frame) -> float:
         return frame.evaluate("drawing && drawing.serverView ? drawing.serverView.position[0] : null")
 
+    @pytest.mark.stress
     def test_the_wheel_scrolls_the_page_around_until_a_click(self, page, viewer, env):
         player = f'srcdoc="{html.escape(env.animation(ravemj.Motion.line([0, 0], [1, 0], duration=1)).html)}"'
         with Around(f'src="{viewer.url}"', player) as around:
@@ -313,6 +317,7 @@ class TestInABrowser:
         page.mouse.wheel(0, 100)
         await_that(lambda: page.evaluate("ravemj.view.distance") > before)
 
+    @pytest.mark.stress
     def test_notes_do_not_cover_a_phone(self, page, env, tmp_path):
         animate(env, None, notes=["a line"]).save(tmp_path / "notes.html")
         for width, is_open in ((1280, True), (390, False)):

@@ -92,6 +92,7 @@ class TestCameraMode:
         assert is_colour(desk, desk.point(1, 0.1, 0, 0), "red")
         assert is_colour(desk, desk.point(2, 0.15, 0, 0), "blue")
 
+    @pytest.mark.stress
     def test_shift_and_middle_drags_shift_the_view(self, desk):
         for how in ({"keys": ["Shift"]}, {"button": Button.MIDDLE}):
             before = desk.core.view.camera
@@ -108,6 +109,7 @@ class TestCameraMode:
             desk.await_camera()
         assert desk.core.view.distance == pytest.approx(0.8 * 0.9**2)
 
+    @pytest.mark.stress
     def test_left_and_middle_together_zoom(self, desk):
         desk.press((300, 100))
         desk.press((300, 100), Button.MIDDLE)
@@ -117,6 +119,7 @@ class TestCameraMode:
         assert desk.core.view.distance == pytest.approx(0.8 * math.exp(-4 * 40 / 480))
         desk.await_camera()
 
+    @pytest.mark.stress
     def test_s_and_a_click_centre_on_the_surface_and_later_turns_are_about_it(self, desk):
         target = desk.point(2, 0.1, 0, 0)
         desk.click(desk.at(target), keys=["s"])
@@ -133,6 +136,7 @@ class TestCameraMode:
             desk.roll(tool, amount)
             desk.await_camera()
 
+    @pytest.mark.stress
     def test_clicks_and_other_keys_do_nothing(self, desk):
         desk.click(desk.at(desk.point(2, 0.15, 0, 0)))
         desk.drag((300, 100), (340, 120), button=Button.RIGHT)
@@ -144,6 +148,7 @@ class TestCameraMode:
         assert desk.viewer.GetSelectedBody() is None
 
 
+@pytest.mark.stress
 def test_the_help_of_a_phone_begins_with_what_fingers_do(own_desk):
     def titles(page):
         page.keyboard.press("h")
@@ -169,6 +174,7 @@ def test_the_help_of_a_phone_begins_with_what_fingers_do(own_desk):
     phone.close()
 
 
+@pytest.mark.stress
 def test_long_names_break_behind_what_separates_their_words(own_desk):
     name = "left_gripper/finger.tipLink-0"
     own_desk.page.evaluate("name => { showName(document.getElementById('toast'), name); }", name)
@@ -263,6 +269,7 @@ class TestInteractionMode:
         assert abs(desk.robot.GetDOFValues()[1]) > 0.2
         assert is_colour(desk, desk.point(2, 0.18, 0, 0), "blue")
 
+    @pytest.mark.stress
     def test_ctrl_and_a_click_on_the_cylinder_change_its_size(self, desk):
         desk.escape()
         desk.click(desk.at(desk.point(2, 0.15, 0, 0)), keys=["Control"])
@@ -275,6 +282,7 @@ class TestInteractionMode:
             desk.click(desk.at(JointHandle.at(desk.robot.simulation_state, 1).center), keys=["Control"])
         assert areas[0] < areas[1] < areas[2]
 
+    @pytest.mark.stress
     @pytest.mark.parametrize("own_desk", [(sliding, {})], indirect=True)
     def test_a_slider_is_slid_up_to_its_limit(self, own_desk):
         own_desk.escape()
@@ -461,6 +469,7 @@ class TestPage:
         desk.robot.SetDOFValues([0.5, 0])
         await_that(lambda: (page.wait_for_timeout(20), len(frames) > count)[1], "nothing was sent")
 
+    @pytest.mark.stress
     @pytest.mark.parametrize(
         "own_desk",
         one_in(2, [(pendulum, {"device_scale_factor": 1.5}), (pendulum, {"device_scale_factor": 2})]),
@@ -489,6 +498,7 @@ class TestPage:
         desk.page.mouse.move(size[0] / 2, size[1] / 2)
         assert_apart(desk.page, "button, .wheel, #text", 5)
 
+    @pytest.mark.stress
     def test_tabs_have_their_own_cameras_and_keep_them_when_they_are_loaded_again(self, desk):
         other = desk.open_page()
         desk.page.bring_to_front()
@@ -506,6 +516,7 @@ class TestPage:
         desk.page.bring_to_front()
         desk.await_picture()
 
+    @pytest.mark.stress
     def test_a_picture_that_is_decoded_late_does_not_cover_a_newer_one(self, desk):
         page = desk.context.new_page()
         page.add_init_script(
@@ -535,6 +546,7 @@ class TestPage:
 
 
 class TestTrouble:
+    @pytest.mark.stress
     def test_a_page_comes_back_after_its_connection_is_lost(self, own_desk):
         own_desk.escape()
         own_desk.drag((320, 100), (400, 130))
@@ -557,6 +569,7 @@ class TestTrouble:
         own_desk.click(own_desk.at(own_desk.point(2, 0.15, 0, 0)))
         await_that(lambda: own_desk.viewer.GetSelectedBody() == own_desk.robot, "clicks do nothing any more")
 
+    @pytest.mark.stress
     @pytest.mark.parametrize("how", one_in(3, ["SetViewer", "Destroy", "quitmainloop"]))
     def test_a_page_says_that_its_viewer_is_closed(self, own_desk, how):
         own_desk.drag((320, 100), (340, 130))
@@ -621,6 +634,7 @@ class TestTrouble:
             await_that(is_said, "it is not said")
             assert page.is_visible("#notice button") == (number == signal.SIGKILL), "the way there may be broken"
 
+    @pytest.mark.stress
     def test_a_browser_that_leaves_in_the_middle_harms_nobody(self, own_desk):
         other = own_desk.open_page()
         for step in range(20):
@@ -630,6 +644,7 @@ class TestTrouble:
         await_that(lambda: len(own_desk.viewer._clients) == 1, "the other page is still there")
         own_desk.await_picture()
 
+    @pytest.mark.stress
     def test_a_body_is_removed_while_it_is_selected_and_dragged(self, own_desk):
         own_desk.viewer.SetBkgndColor([1, 1, 1])
         own_desk.escape()

@@ -7,7 +7,7 @@ import imageio.v3
 import numpy as np
 import pytest
 from browsers import NEEDS_A_BROWSER, SIZE, Desk, assert_apart
-from conftest import MODELS
+from conftest import MODELS, one_in
 from waiting import await_that
 
 import ravemj
@@ -72,6 +72,7 @@ def test_the_motion_is_there_while_there_is_one(desk):
     await_that(lambda: not desk.page.locator("#motion").is_visible(), "the controls stay")
 
 
+@pytest.mark.stress
 def test_the_page_plays_in_real_time_and_shows_it(desk):
     desk.viewer.play(ravemj.Motion.line([0, 0], [2.0, -1.0], 1.0))
     await_that(lambda: not desk.viewer.playback.playing, "it does not end")
@@ -279,6 +280,7 @@ def test_a_picture_is_downloaded_as_it_is_seen_without_buttons(desk):
     assert np.array_equal(saved, desk.expected(shadows=True))
 
 
+@pytest.mark.stress
 def test_a_video_is_downloaded_too(desk, tmp_path):
     desk.viewer.play(ravemj.Motion.line([0, 0], [2.0, -1.0], 0.3))
     with desk.page.expect_download() as download:
@@ -290,6 +292,7 @@ def test_a_video_is_downloaded_too(desk, tmp_path):
     assert [file.name for file in tmp_path.iterdir()] == ["a.mp4"], "the server keeps none"
 
 
+@pytest.mark.stress
 def test_a_video_ends_with_the_last_tab_and_the_tab_that_comes_back_gets_it(desk, tmp_path, caplog):
     desk.viewer.playback.clear()
     await_that(lambda: not desk.page.locator("#motion").is_visible(), "there is a motion")
@@ -332,6 +335,7 @@ def test_the_camera_is_copied_where_pages_have_no_clipboard(desk):
     desk.page.wait_for_selector("[data-crisp]")
 
 
+@pytest.mark.stress
 def test_tabs_share_the_motion(desk):
     other = desk.open_page()
     playback = desk.viewer.play(LONG)
@@ -340,7 +344,7 @@ def test_tabs_share_the_motion(desk):
     await_that(lambda: button(desk, "Play").is_visible(), "the other tab does not show it")
 
 
-@pytest.mark.parametrize("size", [(400, 700), (640, 400), (900, 640)])
+@pytest.mark.parametrize("size", one_in(3, [(400, 700), (640, 400), (900, 640)]))
 def test_controls_do_not_cover_each_other(desk, size):
     desk.viewer.play(LONG).pause()
     desk.page.set_viewport_size({"width": size[0], "height": size[1]})
@@ -348,7 +352,8 @@ def test_controls_do_not_cover_each_other(desk, size):
     assert_apart(desk.page, "#motion, #tools, #joints, #modes, .wheel", 7)
 
 
-@pytest.mark.parametrize("is_mobile", [False, True])
+@pytest.mark.stress
+@pytest.mark.parametrize("is_mobile", [True, False])
 def test_on_a_small_phone_the_tools_and_the_sliders_leave_the_wheels_free(desk, is_mobile):
     size = {"width": 320, "height": 480}
     with desk.context.browser.new_context(viewport=size, has_touch=True, is_mobile=is_mobile) as context:
@@ -363,7 +368,7 @@ def test_on_a_small_phone_the_tools_and_the_sliders_leave_the_wheels_free(desk, 
         assert texts.evaluate_all("all => all.every((one) => one.scrollWidth <= one.clientWidth)")
 
 
-@pytest.mark.parametrize("size", [(320, 480), (480, 320), (480, 640), (700, 400), (1000, 700)])
+@pytest.mark.parametrize("size", one_in(5, [(320, 480), (480, 320), (480, 640), (700, 400), (1000, 700)]))
 def test_the_tools_leave_the_text_free_and_all_sliders_are_on_the_page(desk, size):
     desk.page.set_viewport_size({"width": size[0], "height": size[1]})
     desk.robot.GetEnv().GetViewer().interaction.controls.notices.say("a notice that is longer than a small page", 60)

@@ -138,6 +138,7 @@ def test_mouse_and_keys_play_pause_step_and_go_through_the_time(desk):
     desk.await_value("viewer.playback.playing", lambda playing: playing, "the space bar does not play")
 
 
+@pytest.mark.stress
 def test_a_paused_motion_is_not_drawn_and_a_playing_one_is(desk):
     desk.ask("play(2.0)")
     desk.await_value("viewer.playback.playing", lambda playing: not playing, "it does not end")

@@ -90,6 +90,7 @@ env.Destroy()
 """
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("moves", [50, pytest.param(1000, marks=pytest.mark.stress)])
 def test_a_script_a_user_and_another_viewer_at_once(display, folder, moves):
     values = {"BOX": BOX, "SIZE": repr(SIZE), "CAMERA": repr(ASLANT.tolist()), "DISTANCE": repr(DISTANCE)}

@@ -34,6 +34,7 @@ print(env.SetViewer('window'), env.GetViewer().render(64, 48).std() > 1)
 """
 
 
+@pytest.mark.stress
 @pytest.mark.parametrize("step", one_in(2, [0.01, 0]))
 def test_a_display_that_goes_away_takes_the_window_and_not_the_script(folder, step):
     (folder / "loses.py").write_text(LOSES_ITS_DISPLAY.replace("STEP", str(step)))
@@ -154,6 +155,7 @@ def drag_begun(desk):
     return x, y
 
 
+@pytest.mark.stress
 def test_a_body_that_is_removed_while_it_is_dragged(process):
     desk = process.show()
     x, y = drag_begun(desk)
@@ -180,6 +182,7 @@ def test_an_environment_that_is_destroyed_while_the_user_drags(process):
     assert desk.ask("exec('env = ravemj.Environment()')") == "None"
 
 
+@pytest.mark.stress
 def test_nonsense_is_refused_and_the_window_stays_as_it_is(process):
     desk = process.show()
     picture = desk.settled_picture()
@@ -201,6 +204,7 @@ def test_setviewer_again_and_again_leaves_one_window(process):
     assert desk.ask(threads) == "1"
 
 
+@pytest.mark.stress
 def test_two_windows_on_one_environment_are_driven_apart(process):
     desk = process.show()
     before, from_above = desk.camera, np.diag([1.0, -1, -1, 1])

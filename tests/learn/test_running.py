@@ -51,6 +51,7 @@ def test_what_students_write(write, lines, status, says):
     assert (verdict.status, says in verdict.message) == (status, True), verdict
 
 
+@pytest.mark.stress
 def test_letters_of_any_language_in_paths_and_prints(write, tmp_path):
     file = write("while True: pass", tmp_path / "Übung é")
     assert "it was in line 17" in run_check(EXERCISE, file, seconds=3.0).message

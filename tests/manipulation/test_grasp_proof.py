@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import one_in
 
 import ravemj
 from ravemj.engine.physics.grasp_proof import prove
@@ -35,7 +36,7 @@ def proof_of(robot, arm, box, friction):
     return prove(robot.simulation_state, arm.description, box.simulation_state, friction, np.array([0, 0, -GRAVITY]))
 
 
-@pytest.mark.parametrize("closing", [(0, 1, 0), (1, 0, 0), (0.6, 0.8, 0)])
+@pytest.mark.parametrize("closing", one_in(3, [(0.6, 0.8, 0), (0, 1, 0), (1, 0, 0)]))
 @pytest.mark.parametrize("mass", [0.2, 0.5])
 def test_a_box_is_held_if_friction_carries_its_weight(closing, mass):
     """Two contacts with half of the force each carry mu * force, and the shake upwards needs m (g + a)."""

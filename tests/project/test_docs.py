@@ -23,7 +23,12 @@ def blocks(page: Path, language: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "page", one_in(3, [page for page in PAGES if page.stem not in tutorial.PAGES]), ids=lambda page: page.name
+    "page",
+    [
+        *one_in(5, [page for page in PAGES if page.stem not in {*tutorial.PAGES, "regions", "sensors"}]),
+        *(pytest.param(REPOSITORY / "docs" / name, marks=pytest.mark.stress) for name in ("regions.md", "sensors.md")),
+    ],
+    ids=lambda page: page.name,
 )
 def test_python_runs(page, tmp_path, monkeypatch, capsys):
     """The tutorials have tests of their own."""
@@ -56,6 +61,20 @@ EXECUTED_BY = {
 }
 """What executes the commands that are not executed here."""
 
+LONG = (
+    "doctor",
+    "grasp",
+    "ik puma560 --to",
+    "mirror robot.urdf",
+    "plan",
+    "play pendulum -o",
+    "sweep",
+    "view --web --port",
+    "view models",
+    "view workshop",
+)
+"""How commands begin that take longer than most; ``tests/cli`` has shorter tests of each."""
+
 SEVERAL = {"README.md", "cli.md"}
 """Pages whose commands do not need one another."""
 
@@ -82,9 +101,13 @@ def sequences() -> list[object]:
             found.setdefault(tuple(line for line in lines if (line,) not in found), page.name)
     found.pop((), None)
     first = {"README.md", "CONTRIBUTING.md"}  # the commands of other pages take minutes
-    few = [lines for lines, page in found.items() if page == "cli.md" and not lines[0].startswith("ravemj grasp")][::3]
+    few = [lines for lines, page in found.items() if page == "cli.md" and not lines[0].startswith("ravemj grasp")][::6]
+
+    def is_quick(lines: tuple[str, ...], page: str) -> bool:
+        return (page in first or lines in few) and not lines[0].removeprefix("ravemj ").startswith(LONG)
+
     return [
-        pytest.param(lines, id=" & ".join(lines), marks=[] if page in first or lines in few else [pytest.mark.stress])
+        pytest.param(lines, id=" & ".join(lines), marks=[] if is_quick(lines, page) else [pytest.mark.stress])
         for lines, page in found.items()
     ]
 

@@ -91,7 +91,21 @@ def _forks() -> Forks:
     return Forks(
         environment(PACKAGE_ROOT, PYTHONPATH=path),
         PATIENCE,
-        ["ravemj.compat.openravepy", "ravemj.formats.readers", "ravemj.formats.mjcf", "ravemj.formats.meshes.files"],
+        [
+            "api_case",
+            "ravemj.compat.convexdecompositionpy",
+            "ravemj.compat.examples",
+            "ravemj.compat.metaclass",
+            "ravemj.compat.openravepy",
+            "ravemj.compat.openravepy_configurationcache",
+            "ravemj.compat.openravepy_ext",
+            "ravemj.compat.openravepy_int",
+            "ravemj.compat.pyANN",
+            "ravemj.formats.meshes.files",
+            "ravemj.formats.meshes.obj",
+            "ravemj.formats.mjcf",
+            "ravemj.formats.readers",
+        ],
     )
 
 

@@ -172,6 +172,7 @@ def test_drawings_are_in_videos(models, tmp_path):
 # --- threads
 
 
+@pytest.mark.stress
 def test_threads_draw_and_drop_while_pictures_are_drawn(env):
     failures, stop = [], threading.Event()
 

@@ -27,6 +27,7 @@ def run(tmp_path, script):
     return done.returncode, done.stdout
 
 
+@pytest.mark.stress
 def test_no_thread_computes_any_more(tmp_path):
     script = """
 count = 0
@@ -52,6 +53,7 @@ raise SystemExit(3)
     assert run(tmp_path, script) == (3, "none\n")
 
 
+@pytest.mark.stress
 def test_a_thread_that_keeps_the_lock_is_ended(tmp_path):
     script = """
 ended = []
@@ -71,6 +73,7 @@ begun.wait()
     assert run(tmp_path, script) == (0, "(['ended'], True)\n")
 
 
+@pytest.mark.stress
 def test_environments_that_threads_make_later_do_not_compute(tmp_path):
     script = """
 made = []

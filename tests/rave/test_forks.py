@@ -189,6 +189,7 @@ def end_as_a_script(script, tmp_path):
     return run.stdout
 
 
+@pytest.mark.stress
 def test_the_end_of_a_fork_leaves_the_parent_its_things(tmp_path):
     """A fork that ends as scripts do runs the functions of ``atexit``, which close pages and remove files."""
     script = """

@@ -268,6 +268,7 @@ def test_a_hand_around_the_target_at_the_start_begins_there():
     )
 
 
+@pytest.mark.stress
 def test_candidates_come_in_the_order_of_their_indices():
     scene = Scene()
     scene.robot.SetActiveDOFs(scene.manip.GetGripperIndices(), DOFAffine.X | DOFAffine.Y | DOFAffine.Z)

@@ -99,6 +99,7 @@ def test_no_answer_on_collisions_is_that_of_an_earlier_configuration(model):
         assert found == answers[tuple(robot.GetDOFValues().tolist())], place
 
 
+@pytest.mark.stress
 def test_certifying_leaves_bodies_and_shapes_where_they_were(env, robot):
     wall = ravemj.RaveCreateKinBody(env, "")
     wall.InitFromBoxes([[0, 0, 0, 0.1, 0.01, 0.3]])
@@ -159,6 +160,7 @@ def test_no_lock_stays_held(env, robot, name):
     env.StopSimulation()
 
 
+@pytest.mark.stress
 def test_inverse_kinematics_leaves_the_robot():
     env = ravemj.load(ravemj.model_path("puma560"))
     robot = env.GetRobots()[0]

@@ -56,7 +56,7 @@ FORMS = {
 }
 
 
-@pytest.mark.parametrize("form", one_in(2, list(FORMS)))
+@pytest.mark.parametrize("form", one_in(4, list(FORMS)))
 def test_each_form_is_played_recorded_and_shown(env, tmp_path, form):
     robot = env.GetRobots()[0]
     playback = env.GetViewer().play(FORMS[form](env, tmp_path))

@@ -297,6 +297,7 @@ def test_old_names_and_errors_name_an_argument(name, scene):
             gc.collect(0)
 
 
+@pytest.mark.stress
 def test_a_handle_needs_a_function(capfd):
     for wrong in WRONG[:-1]:
         with pytest.raises(TypeError, match=r"Handle: release: is .*, and should be a function"):

@@ -14,7 +14,7 @@ from pathlib import Path
 import jobs
 import numpy as np
 import pytest
-from conftest import MODELS
+from conftest import MODELS, one_in
 from hypothesis import given
 from hypothesis import strategies as st
 from strategies import examples
@@ -52,7 +52,7 @@ def files(folder):
     return {path.name: path.read_bytes() for path in sorted((folder / "shards").glob("*.npz"))}
 
 
-@pytest.mark.parametrize("name", JOBS)
+@pytest.mark.parametrize("name", one_in(3, list(JOBS)))
 def test_shards_and_executors_do_not_change_numbers(name, tmp_path):
     model, what, count, more = JOBS[name]
     whole = ravemj.sweep(model, what, count, tmp_path / "whole", shard=count, **more)
@@ -82,6 +82,7 @@ def test_processes_do_not_change_numbers(name, tmp_path):
     assert files(there.folder) == files(here.folder)
 
 
+@pytest.mark.stress
 def test_two_processes_with_one_that_dies(tmp_path, monkeypatch):
     monkeypatch.setenv("SWEEP_MARK", str(tmp_path / "mark"))
     sweep = ravemj.sweep("pendulum", jobs.dies_once, ITEMS, tmp_path / "out", block=10, shard=10, executor=2)
@@ -247,7 +248,7 @@ def test_check_computes_damaged_shards_anew(tmp_path):
         (jobs.Failing(2), r"3 of 5 shards are missing: run it again with a working executor \(BrokenExecutor: a node"),
         (jobs.Failing(2, refuses=True), r"3 of 5 shards are missing.*RuntimeError: it is closed"),
         (jobs.Losing(2), r"3 of 5 shards failed; the first error: ConnectionError: lost"),
-        (jobs.Hanging(), r"5 of 5 shards are missing.*no shard ended within 1 s"),
+        pytest.param(jobs.Hanging(), r"5 of 5 shards are missing.*no shard ended within 1 s", marks=pytest.mark.stress),
     ],
 )
 def test_executors_that_fail(executor, message, tmp_path):
@@ -300,6 +301,7 @@ def test_a_full_disk_ends_it(tmp_path, monkeypatch):
     assert ravemj.sweep("pendulum", "poses", 1000, tmp_path).done == 1000
 
 
+@pytest.mark.stress
 def test_two_drivers_on_one_folder(tmp_path):
     arguments = "pendulum", jobs.slow, 300, tmp_path / "out"
     with ThreadPoolExecutor(2) as threads:
@@ -429,6 +431,7 @@ def test_the_environment_stays_as_it_is(tmp_path):
     np.testing.assert_array_equal(env.GetRobots()[0].GetDOFValues(), before)
 
 
+@pytest.mark.stress
 def test_digests_are_those_of_other_processes():
     code = """
 import ravemj
