@@ -1,6 +1,7 @@
 """Draws docs/pictures/rooms.svg: which folder of ravemj/ imports which, read from the code."""
 
 import ast
+from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -22,10 +23,24 @@ def rooms() -> list[str]:
     return [line.split("`")[1] for line in lines if line.startswith("| `")]
 
 
+def blocks(node: ast.AST) -> list[ast.AST]:
+    """Return the statements right below a statement, without expressions, which are most of the nodes."""
+    fields = ("body", "orelse", "handlers", "finalbody", "cases")
+    return [child for field in fields for child in getattr(node, field, [])]
+
+
+def statements(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield all statements below a node."""
+    for child in blocks(node):
+        yield child
+        yield from statements(child)
+
+
 def imported_rooms(room: str) -> set[str]:
     """Return the rooms whose modules those of a room import, in functions and for type checkers too."""
     files = [PACKAGE / f"{room}.py", *(PACKAGE / room).rglob("*.py")]
-    nodes = [node for path in files if path.is_file() for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in files if path.is_file()]
+    nodes = [node for tree in trees for node in statements(tree)]
     names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
     names += [node.module for node in nodes if isinstance(node, ast.ImportFrom) and node.module]
     return {parts[1] for parts in (name.split(".") for name in names) if parts[0] == "ravemj" and len(parts) > 1}

@@ -852,7 +852,8 @@ def test_roots_come_back_as_roots(tmp_path):
 
 def test_of_derivatives_in_collada_only_wrong_ones_are_left_out(tmp_path):
     joints = "".join(
-        f'<Body name="{after}"/><Joint name="{name}"><Body>{before}</Body><Body>{after}</Body><axis>0 0 1</axis></Joint>'
+        f'<Body name="{after}"/><Joint name="{name}"><Body>{before}</Body><Body>{after}</Body>'
+        "<axis>0 0 1</axis></Joint>"
         for name, before, after in (("j", "b", "c"), ("k", "c", "d"))
     )
     joints += '<Body name="e"/><Joint name="m" enable="false" mimic_pos="j*k" mimic_vel="|j sin( |k j"><Body>d</Body>'

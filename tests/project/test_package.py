@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from rooms import blocks, statements
 
 import ravemj
 from ravemj.compat import names
@@ -59,19 +60,6 @@ def room(path: Path) -> str:
     """The box of a module; those that give packages of ``compat`` the names of ``ravemj`` belong to its front."""
     first = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
     return "__init__" if first in names.PUBLIC else first
-
-
-def blocks(node: ast.AST) -> list[ast.AST]:
-    """The statements right below a statement; expressions, where most nodes are, are left out."""
-    fields = ("body", "orelse", "handlers", "finalbody", "cases")
-    return [child for field in fields for child in getattr(node, field, [])]
-
-
-def statements(node: ast.AST):
-    """All statements below a node."""
-    for child in blocks(node):
-        yield child
-        yield from statements(child)
 
 
 def imports(path: Path):

@@ -56,6 +56,5 @@ def test_the_functions_that_a_call_goes_through_are_there():
     assert [pair for pair in named if pair[1] not in defined(REPOSITORY / "ravemj" / pair[0])] == []
 
 
-@pytest.mark.stress
 def test_the_picture_of_the_rooms_is_that_of_the_code():
     assert rooms.PICTURE.read_text(encoding="utf-8") == rooms.drawn(), "python scripts/pages/rooms.py draws it"
