@@ -190,7 +190,7 @@ class Controller(Interface):
 
 
 _SLACK = 1e-6
-"""Amount by which a time step may exceed the velocity limits [rad or m per step]; the number is OpenRAVE's."""
+"""Tolerance [rad or m] of the check that a joint's motion in a time step keeps its velocity limit; OpenRAVE's value."""
 
 
 class _Path(NamedTuple):
@@ -201,7 +201,7 @@ class _Path(NamedTuple):
         columns: The columns of its waypoints that hold joint values.
         dofs: The DOF indices of these values.
         moves_base: Whether its waypoints have a pose of the robot's base.
-        grabs: The remaining changes of grabs, in the order of time.
+        grabs: The grabs and releases that are still to be executed, in the order of time.
     """
 
     trajectory: Trajectory
@@ -484,7 +484,7 @@ class VelocityController(Controller):
 
 
 class _PathPart(NamedTuple):
-    """One controller of a ``MultiController``, and the indices of its DOFs in the values of all controllers."""
+    """One controller of a ``MultiController``, and the positions of its DOFs among those of the ``MultiController``."""
 
     controller: Controller
     places: Ints

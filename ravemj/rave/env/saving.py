@@ -320,7 +320,7 @@ class Saving(Description):
 
 
 def _checked(atts: SaveArguments | None, diagnostics: Diagnostics) -> list[tuple[str, str]]:
-    """Return the save options as pairs of name and value; a string is the option ``target``."""
+    """Return the save options as pairs of name and value; if ``atts`` is a string, it is the value of ``target``."""
     if isinstance(atts, str):
         return [("target", atts)]
     pairs = list((atts.items() if isinstance(atts, Mapping) else atts) or ())

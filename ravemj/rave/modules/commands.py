@@ -356,7 +356,7 @@ def _close_fingers(task: TaskManipulation, arguments: str) -> str:
 
 
 def _release_fingers(task: TaskManipulation, arguments: str) -> str:
-    """Open the gripper and release a body."""
+    """Open the gripper, and release the grabbed body that the arguments name, if any."""
     options = _gripper_options(task, arguments)
     target = _named_body(task, options["target"]) if "target" in options else None
     motion = task.release_fingers(options.get("movingdir"), target, finger_steps(options))

@@ -235,8 +235,8 @@ class _PoseSolver:
 def _some(rows: Floats, near: Floats, random: np.random.Generator) -> Floats:
     """Return at most ``_MOST_ROWS`` of many IK solutions.
 
-    Of those that differ by full turns, the ones nearest to ``near`` come first, in random order: paths to the others
-    are long and reach the same tool pose.
+    Of each set of solutions that differ by full turns, the one nearest to ``near`` has priority: paths to the others
+    are longer and reach the same tool pose. The order is random among the nearest ones.
     """
     rows = rows[np.argsort(np.linalg.norm(rows - near, axis=1), kind="stable")]
     first = np.unique(np.round(np.mod(rows, 2 * np.pi), 6), axis=0, return_index=True)[1]
