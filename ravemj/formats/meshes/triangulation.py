@@ -69,7 +69,7 @@ def triangles(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats
 
 
 def _fans_about_the_last(starts: Ints, sizes: Ints) -> Ints:
-    """Triangulate convex polygons as fans about their last corner, the order in which ear clipping cuts them."""
+    """Triangulate convex polygons as fans about their last corner, with the triangles in the order of ear clipping."""
     triangles = fans(starts, sizes)
     first = np.repeat(starts + sizes - 1, np.maximum(sizes - 2, 0))
     return np.stack([first, triangles[:, 1] - 1, triangles[:, 2] - 1], axis=1)
