@@ -291,7 +291,7 @@ class GraspSimulation(Manipulation):
         return {int(dof): float(known.get(int(dof), 0.0)) for dof in self.robot.GetActiveDOFIndices()}
 
     def _closing(self) -> Floats:
-        """Return the velocity of each DOF if all grippers close, shape (dof,): 1, -1 or, outside grippers, 0."""
+        """Return the velocity of each DOF if all grippers close, shape (dof,): each is 1, -1 or 0."""
         speeds = np.zeros(self.robot.GetDOF())
         for manip in self.robot.GetManipulators():
             speeds[manip.GetGripperIndices()] = manip.GetChuckingDirection()

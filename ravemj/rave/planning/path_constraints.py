@@ -103,7 +103,7 @@ def _lacking(
 def _test(
     bodies: Bodies, given: object, manip: Callable[[], Manipulator], tolerance: float, holding: KinBody | None
 ) -> Constraint:
-    """Return the membership test of a constraint set; regions test the bodies' present pose, not its argument."""
+    """Return the membership test of a constraint set; for regions, it tests the bodies' present configuration."""
     if isinstance(given, Sets):
         tests = [_test(bodies, member, manip, tolerance, holding) for member in given.members]
         combine = any if given.any else all
