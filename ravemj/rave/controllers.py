@@ -371,7 +371,7 @@ class IdealController(Controller):
     def _place(self, dofs: Ints, values: Floats, T_world_base: Floats | None, elapsed: float = 0.0) -> None:
         """Set joint values and, unless None, the pose of the base; all velocities become zero.
 
-        ``elapsed`` is the duration of the motion [s], from which its velocity is checked; 0 allows any.
+        ``elapsed`` is the duration of the motion [s], to check the velocity limits; 0 allows any velocity.
         """
         robot = self._robot
         if len(dofs):
