@@ -83,7 +83,8 @@ def _open_window(env: Environment, robot: Robot | None, options: argparse.Namesp
 def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
     """Set title, selection and look, and start physics if requested.
 
-    The camera shows ``robot`` obliquely. Without robot, it is the file's camera, or shows everything if there is none.
+    The camera shows ``robot`` obliquely. Without robot, the file's camera is kept; if there is none, the camera shows
+    everything.
     """
     viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
     if robot is not None or env.renderer.file_camera() is None:
