@@ -447,7 +447,7 @@ class GeometryInfo(GeometrySizes):
         return numbers[:count].tolist()
 
     def _mesh(self) -> scene.Mesh:
-        """Return the mesh ``_meshcollision``, or that of the collision or render file if it is None."""
+        """Return the mesh ``_meshcollision``; if that is None, the collision file's, else the render file's mesh."""
         if self._meshcollision is not None:
             return checked_mesh(self._meshcollision, "GeometryInfo._meshcollision")
         collision = _file(self._filenamecollision, self._vCollisionScale)

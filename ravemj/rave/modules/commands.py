@@ -319,7 +319,7 @@ def _jitter_active(base: BaseManipulation, arguments: str) -> str:
 
 
 def _set_minimum_goal_paths(module: BaseManipulation | TaskManipulation, arguments: str) -> str:
-    """Set the minimum number of goal paths to compare, which has no effect: ravemj returns the first path."""
+    """Accept a minimum number of goal paths to compare, which has no effect: ravemj returns the first path."""
     del module
     Tokens(arguments).count()
     return ""

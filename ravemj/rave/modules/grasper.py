@@ -321,7 +321,7 @@ class GraspSimulation(Manipulation):
 
 
 def _sweep_part(content: bytes, span: tuple[int, int]) -> list[tuple[int, Found]]:
-    """Simulate a range of candidates in a worker process; return the accepted grasps without their target."""
+    """Simulate a range of candidates in a worker process; return the accepted ones, with ``target`` set to None."""
     robot, candidates, request, sweep = _unpickled(content)
     simulation = GraspSimulation(robot.GetEnv())
     simulation.choose(robot.GetName())

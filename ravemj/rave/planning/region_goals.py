@@ -160,7 +160,8 @@ class _PoseSolver:
     def solve(self, region: int, T_world_tool: Floats, random: np.random.Generator) -> PoseSolutions:
         """Return all IK solutions for a pose of a region, including those that differ by full turns.
 
-        Solvers of other goal types leave a part of the pose free; their solutions are projected onto the region.
+        Solvers of goal types other than poses leave a part of the pose free; their solutions are projected onto the
+        region.
         """
         kind = _Type.Transform6D if self._given is None else self._given.kind
         base = self._manip.GetBase()
@@ -245,7 +246,7 @@ def _some(rows: Floats, near: Floats, random: np.random.Generator) -> Floats:
 
 
 def _repaired(values: Values, error: Error, row: Floats) -> Floats | None:
-    """Project a configuration onto both the constraint and a region; None if that fails."""
+    """Project a configuration onto both the constraint and a region; None if that fails, or without constraint."""
     manifold = values.conditions.manifold
     if manifold is None:
         return None
