@@ -176,7 +176,7 @@ def _reasons(status: Planner.PlannerStatus) -> list[str]:
 def _outcome(
     robot: Robot, traj: Trajectory, options: argparse.Namespace
 ) -> tuple[Motion, JointTrajectory | None, Certificate | None]:
-    """Return a trajectory's motion, points for a controller, and certificate; the latter two only if requested."""
+    """Return a trajectory's motion, points for a controller, and certificate, the last two None if not requested."""
     motion, points = _motion(robot, traj), None
     if options.output is not None and is_joint_trajectory(options.output):
         start = None if options.start is None else start_values(options.start, robot)
