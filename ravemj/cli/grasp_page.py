@@ -144,7 +144,7 @@ def _hand(env: Environment, arm: Manipulator, target: KinBody, grasp: Grasp, num
 
 
 def _arm(env: Environment, arm: Manipulator, body: KinBody, target: KinBody, grasp: Grasp) -> _DrawnArm:
-    """Add a copy of the robot that approaches ``body``, a copy of the target, from the same relative pose."""
+    """Add a copy of the robot that approaches ``body``, a copy of the target; relative poses are as in the original."""
     T_world_target = body.GetTransform()
     robot = cast("Robot", RaveCreateRobot(env, ""))
     robot.Clone(arm.GetRobot(), 0)

@@ -93,7 +93,7 @@ def _arm(env: Environment, options: argparse.Namespace) -> Manipulator | None:
 
 
 def _values(robot: Robot, arm: Manipulator | None, options: argparse.Namespace) -> tuple[list[int], Floats]:
-    """Return the moving DOFs and the values of ``--to``, shape (1, n): of all DOFs or of the arm's, else raise."""
+    """Return the moving DOFs, all or the arm's, and their values from ``--to``, (1, n); raise if n fits neither."""
     every = list(range(robot.GetDOF()))
     dofs = every if arm is None else arm.GetArmIndices().tolist()
     if len(options.to) == len(every):
@@ -176,7 +176,7 @@ def _reasons(status: Planner.PlannerStatus) -> list[str]:
 def _outcome(
     robot: Robot, traj: Trajectory, options: argparse.Namespace
 ) -> tuple[Motion, JointTrajectory | None, Certificate | None]:
-    """Return a trajectory's motion, and its points for a controller and its certificate, None if not requested."""
+    """Return a trajectory's motion, points for a controller, and certificate, the last two None if not requested."""
     motion, points = _motion(robot, traj), None
     if options.output is not None and is_joint_trajectory(options.output):
         start = None if options.start is None else start_values(options.start, robot)

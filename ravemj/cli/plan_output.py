@@ -178,7 +178,7 @@ def _segments(plan: Plan, nodes: Floats, lines: Sequence[tuple[int, int]]) -> Fl
 
 
 def _hand(plan: Plan, values: Floats) -> Floats:
-    """Return the world positions of the tool, or without an arm of the last link's centre of mass, shape (n, 3)."""
+    """Return world positions, shape (n, 3), of the tool or, if there is no arm, of the last link's centre of mass."""
     if plan.arm is None:
         link = plan.robot.GetLinks()[-1]
         place = np.nan_to_num(link.GetLocalCOM())

@@ -81,7 +81,11 @@ def _open_window(env: Environment, robot: Robot | None, options: argparse.Namesp
 
 
 def _arrange(viewer: Viewer, env: Environment, robot: Robot | None, options: argparse.Namespace) -> None:
-    """Set title, selection and look; if the file has no camera, show the robot or everything obliquely."""
+    """Set title, selection and look, and start physics if requested.
+
+    The camera shows ``robot`` obliquely. Without robot, the file's camera is kept; if there is none, the camera shows
+    everything.
+    """
     viewer.SetTitle(f"{os.path.basename(options.model)} - ravemj")
     if robot is not None or env.renderer.file_camera() is None:
         center, radius = shown_sphere(env, robot)

@@ -158,7 +158,7 @@ def _wrong_type(function: FunctionType, args: tuple[Any, ...], kwargs: dict[str,
 
 
 def _named(error: Exception, function: FunctionType, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Exception | None:
-    """Return a copy of an error with the arguments' values; None if it names an argument or comes from user code."""
+    """Return a copy of an error with the arguments' values; None if it already names one or is from user code."""
     files = [frame.f_code.co_filename for frame, _ in walk_tb(error.__traceback__)]
     if isinstance(error, RavemjError) or not all(file.startswith(_OURS) or file.endswith(".pyx") for file in files):
         return None

@@ -66,7 +66,10 @@ def disown(thing: object, but: tuple[str, ...] = ()) -> None:
 
 @cache
 def _inherited(kind: type, silent: tuple[str, ...]) -> type:
-    """Return a class of the same memory layout whose instances, inherited from the parent, raise an error when used."""
+    """Return a subclass of ``kind`` for objects inherited from the parent process, whose use raises an error.
+
+    It has the same memory layout. The methods named in ``silent`` do nothing.
+    """
 
     def refuse(thing: object, *arguments: object) -> NoReturn:
         del thing, arguments

@@ -118,7 +118,7 @@ class ShortestPaths:
             start = step
 
     def _step(self, start: int, end: int, distance: dict[int, int]) -> int:
-        """Return the next node on the shortest path from ``start``; ``distance`` is by node, from the path's end."""
+        """Return the next node on the shortest path from ``start``; ``distance`` is that from ``end``, by node."""
         nearer = self._nearer(start, distance)
         while len(nearer) > 1:  # recursively, towards the largest inner node
             end = self._largest_inner(start, end, distance)

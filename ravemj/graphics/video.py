@@ -175,7 +175,7 @@ def _write_video(frames: Iterator[Frame], temporary: Path, rate: Fraction, kind:
 
 
 def _write_mpg(frames: Iterator[Frame], temporary: Path, rate: Fraction) -> None:
-    """Write an MPEG-2 video; it allows few frame rates, so frames are repeated at its most common rate."""
+    """Write an MPEG-2 video; the format allows few frame rates, so frames are repeated to reach its most common one."""
 
     def repeated() -> Iterator[Frame]:
         for number, frame in enumerate(frames):
@@ -298,7 +298,7 @@ def _encode(encoder: _Encoder, frames: Iterator[Frame], temporary: Path, rate: F
 
 
 def _checked(frames: Iterable[Frame]) -> Iterator[Frame]:
-    """Yield copies of the frames; raise unless there is one, and all are uint8 and of the same shape (H, W, 3)."""
+    """Yield copies of the frames; raise if there is none, or not all are uint8 of one shape (H, W, 3)."""
     shape: tuple[int, ...] = ()
     for number, frame in enumerate(frames):
         copy = np.array(frame, order="C")

@@ -223,7 +223,7 @@ class CollisionChecker(Interface):
         return thing
 
     def _active_links(self, argument: object) -> Links:
-        """Return the links to test if the option ``ActiveDOFs`` applies to a body; None means all."""
+        """Return the links that a body's active DOFs move if the option ``ActiveDOFs`` is set; None means all."""
         if not self._options & _ACTIVE_DOFS or not isinstance(argument, KinBody) or argument.moves_as_a_whole():
             return None
         return MovedBy(argument.active_dofs())

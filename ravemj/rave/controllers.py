@@ -190,7 +190,7 @@ class Controller(Interface):
 
 
 _SLACK = 1e-6
-"""Amount by which a time step may exceed the velocity limits [rad or m per step]; the number is OpenRAVE's."""
+"""Tolerance [rad or m] of the check that a joint's motion in a time step keeps its velocity limit; OpenRAVE's value."""
 
 
 class _Path(NamedTuple):
@@ -201,7 +201,7 @@ class _Path(NamedTuple):
         columns: The columns of its waypoints that hold joint values.
         dofs: The DOF indices of these values.
         moves_base: Whether its waypoints have a pose of the robot's base.
-        grabs: The remaining changes of grabs, in the order of time.
+        grabs: The grabs and releases that are still to be executed, in the order of time.
     """
 
     trajectory: Trajectory
@@ -360,7 +360,7 @@ class IdealController(Controller):
             robot.Grab(body, robot.GetLinks()[change.link])
 
     def _show(self, path: _Path, time: float, elapsed: float) -> None:
-        """Move the robot to the point of a path at a time [s] from its start; ``elapsed`` is that of ``_place``."""
+        """Move the robot to the point of a path at a time [s] from its start; ``_place`` explains ``elapsed``."""
         point = path.trajectory.Sample(time)
         T_world_base = None
         if path.moves_base:
@@ -371,7 +371,7 @@ class IdealController(Controller):
     def _place(self, dofs: Ints, values: Floats, T_world_base: Floats | None, elapsed: float = 0.0) -> None:
         """Set joint values and, unless None, the pose of the base; all velocities become zero.
 
-        ``elapsed`` is the duration of the motion, for the velocity limits [s]; 0 allows any speed.
+        ``elapsed`` is the duration of the motion [s], to check the velocity limits; 0 allows any velocity.
         """
         robot = self._robot
         if len(dofs):
@@ -484,7 +484,7 @@ class VelocityController(Controller):
 
 
 class _PathPart(NamedTuple):
-    """One controller of a ``MultiController``, and the indices of its DOFs in the values of all controllers."""
+    """One controller of a ``MultiController``, and the positions of its DOFs among those of the ``MultiController``."""
 
     controller: Controller
     places: Ints

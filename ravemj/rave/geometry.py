@@ -91,7 +91,7 @@ class Geometry(ApiObject):
         return np.array(self._sizes())
 
     def _sizes(self) -> Vec3:
-        """Return OpenRAVE's three size numbers of a box or round shape, which all its size getters read."""
+        """Return OpenRAVE's three size numbers of a box or round shape; the size getters return parts of these."""
         shape = self._scene.shape
         if isinstance(shape, scene.Box):
             return shape.half_extents

@@ -300,13 +300,13 @@ class IkSolver(Interface):
         return ""
 
     def _repeat_count(self, arguments: str) -> str:
-        """Return 1 if filters have already seen the present link poses in this search, else 0."""
+        """Return 1 if the latest search has already called filters with the present link poses, else 0."""
         del arguments
         search = self._latest()
         return str(int(search is not None and search.is_repeated()))
 
     def _solution_indices(self, arguments: str) -> str:
-        """Raise an error: these are the numbers of the branches in the C++ code that OpenRAVE's ikfast generates."""
+        """Raise an error: the indices number the branches of the C++ code that OpenRAVE's ikfast generates."""
         del arguments
         remedy = "solutions are told apart by their joint values: FindIKSolutions returns them all"
         raise UnsupportedError(f"GetSolutionIndices ({remedy})", "numbering of the branches of a solver")

@@ -131,7 +131,7 @@ class Member(ApiObject):
 
 
 def _chosen(arrays: dict[str, Any], name: str | None, index: int) -> Any:  # noqa: ANN401 - floats or integers
-    """Return all arrays if ``name`` is None, else the named array or one element; None for an unknown name."""
+    """Return all arrays, the array ``name`` or, if ``index`` >= 0, one element; None for an unknown name."""
     if name is None:
         return arrays
     array = arrays.get(name)

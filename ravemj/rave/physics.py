@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _WITHOUT_DYNAMICS = "genericphysicsengine"
 _WITH_DYNAMICS = ("ode", "bullet", "mujoco")
 _LONGEST = 86400
-"""Longest accepted time step [s]; a day takes MuJoCo minutes, and more is surely a mistake."""
+"""Longest accepted time step [s]: a day, which MuJoCo simulates in minutes. A longer step is surely a mistake."""
 
 
 class PhysicsEngine(Interface):

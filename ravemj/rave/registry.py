@@ -210,7 +210,7 @@ _MAKERS: dict[InterfaceType, tuple[Callable[["Environment", str], object], Seque
     InterfaceType.trajectory: (RaveCreateTrajectory, ("GenericTrajectory",)),
     InterfaceType.viewer: (RaveCreateViewer, ()),
 }
-"""Factory and known names of each interface type; the names of viewers are queried."""
+"""Factory and known names of each interface type; `RaveGetLoadedInterfaces` determines the names of viewers."""
 
 
 def RaveGetLoadedInterfaces() -> dict[InterfaceType, list[str]]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _WAITING = 8
 """Maximum number of frames in the encoder's queue; drawing blocks when it is full."""
 _PATIENCE = 0.2
-"""Interval [s] at which the encoder thread checks whether the script has ended without ``Stop``, and then ends, too."""
+"""Interval [s] at which the encoder thread checks whether the script has ended; if so, the thread ends, too."""
 
 _TIMINGS = ("simtime", "realtime", "controller")
 

@@ -104,7 +104,7 @@ class InverseKinematicsModel(SolvedJoints):
         return self.setrobot(freeinc)
 
     def _solve(self, *, keep: bool) -> None:
-        """Derive the solver; if ``keep``, use the arm's solver when it is of the same type.
+        """Derive the solver; if ``keep``, use the arm's present solver if it has the model's goal type.
 
         Raises:
             InverseKinematicsError: The arm cannot be solved.

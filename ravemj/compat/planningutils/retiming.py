@@ -314,7 +314,7 @@ def _of_one_waypoint(traj: Trajectory) -> PlannerStatus:
 
 
 def _retimer(traj: Trajectory) -> str:
-    """Return the name of OpenRAVE's default retimer for the interpolation of the joint values, or else of the poses."""
+    """Return OpenRAVE's default retimer for the interpolation of the joint values or, without these, of the poses."""
     groups = checked_kind(traj, Trajectory, "trajectory").GetConfigurationSpecification().GetGroups()
     of_joints = [group.interpolation for group in groups if group.name.startswith("joint_values")]
     of_poses = [

@@ -98,7 +98,7 @@ class _SourceFinder:
         return spec
 
     def _is_old(self, path: str) -> bool:
-        """Return whether a module is Python 2: it belongs to the script, or is invalid in Python 3."""
+        """Return whether a module is treated as Python 2: the script's own modules, and those invalid in Python 3."""
         path = os.path.realpath(path)
         if any(_is_in(path, folder) for folder in _ENVIRONMENT):
             return False

@@ -33,7 +33,7 @@ bitwise_right_shift bool concat core cumulative_prod cumulative_sum divmod dtype
 matrix_transpose matvec max min permute_dims polynomial pow round strings test testing trapezoid typing ulong
 unique_all unique_counts unique_inverse unique_values unstack vecdot vecmat
 """
-"""Names that only later versions export by ``from numpy import *``; they would hide those of Python and ``math``."""
+"""Names that NumPy 1 did not export by ``from numpy import *``; they would hide those of Python and ``math``."""
 
 _OF_ARRAYS = ("repeat", "reshape", "resize", "tile")
 """Functions whose second argument is a size or shape."""

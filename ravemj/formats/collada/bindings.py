@@ -86,7 +86,7 @@ class Bindings:
 
 
 def _is_through(binding: AxisBinding, instance: Element, holder: Element) -> bool:
-    """Return False if the binding's path goes through another model instance, or through another joint instance."""
+    """Return False if the binding's path contains a model instance or joint instance other than the given ones."""
     for item in binding.through:
         kind = local_name(item)
         if kind == "instance_kinematics_model" and item is not instance:

@@ -208,7 +208,7 @@ class BodyWriter:
         return anchor, settled.pose(T_frame_child)
 
     def _rest_pose(self, index: int) -> Pose:
-        """Return the pose of a joint's child link in its parent link if the joint value in the file is 0."""
+        """Return the pose of a joint's child link in its parent link that corresponds to joint value 0 in the file."""
         joint = self._joints[index]
         if not self._body.joints:  # joints place nothing
             parent, child = (self._body.links[index].T_world_link for index in (joint.parent, joint.child))

@@ -109,7 +109,7 @@ def find_external(body: KinBody, number: int, target: str, scheme: str | None = 
 
 
 def _uri(path: str, target: str, scheme: str | None) -> str:
-    """Return a URI that refers from the file ``target`` to ``path``; relative if not in a data folder of OpenRAVE."""
+    """Return the URI of ``path`` for the file ``target``: relative, or ``scheme`` with a data folder's path."""
     name = name_in_data_folders(path) if scheme else ""
     file = find(name) if name else None
     if file is not None and os.path.samefile(file, path):  # an earlier folder may have another file of that name

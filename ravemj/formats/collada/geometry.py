@@ -128,7 +128,7 @@ class GeometryReader:
         return self._meshes[geometry]
 
     def _check_count(self, element: Element, readable: int) -> None:
-        """Warn if fewer triangles than declared are readable; for other polygons, if none is readable."""
+        """Warn if any declared triangle of ``<triangles>``, or every polygon of another element, is unreadable."""
         count = attribute_number(element, "count", 0)
         if readable < count and (readable == 0 or local_name(element) == "triangles"):
             message = f"only {readable} of {count:.0f} can be read: indices lead nowhere, or numbers are missing"

@@ -193,8 +193,8 @@ class ModelReader:
     def _world(self, node: Node) -> Floats:
         """Return the 4x4 pose of a node in the world as OpenRAVE composes it.
 
-        It is the pose of the root link times the transforms of the nodes below the link's node. For shapes of the
-        link's node itself, the node's transform is applied twice.
+        Below the root link's node, it is the pose of the root link times the transforms from there down to the node.
+        For shapes of the root link's node itself, the node's transform is applied twice.
         """
         path = [*node.around()]
         if self._root not in path:

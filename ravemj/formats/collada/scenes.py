@@ -156,7 +156,10 @@ def _body(scene: SceneContext, instance: Element, wanted: str) -> BodyBuilder | 
 def _take_apart(
     scene: SceneContext, instance: Element, parts: _System, motions: dict[Element, Element], depth: int
 ) -> None:
-    """Collect in ``parts`` the systems and models that an instance of a system contains, recursively."""
+    """Collect in ``parts`` the systems and models that an instance of a system contains, recursively.
+
+    ``motions`` are the ``<axis_info>`` elements of the enclosing ``<motion>`` elements, by axis.
+    """
     system = scene.library.follow(instance)
     if system is None or depth > _MAX_DEPTH:
         return

@@ -109,7 +109,7 @@ class _Gltf:
         return count * item
 
     def _triangles(self, mesh: Entry) -> int:
-        """Return an upper bound of the number of triangles in a mesh; three times as many bound its vertices."""
+        """Return an upper bound of the number of triangles in a mesh; its vertices are at most three times as many."""
         total = 0
         for primitive in cast("list[Entry]", mesh["primitives"]):
             used: list[int | None] = [primitive["attributes"].get("POSITION"), primitive.get("indices")]

@@ -69,7 +69,7 @@ def triangles(points: Floats, sizes: Ints, index: Ints, concave: bool) -> Floats
 
 
 def _fans_about_the_last(starts: Ints, sizes: Ints) -> Ints:
-    """Triangulate convex polygons as fans about their last corner, the order in which ear clipping cuts them."""
+    """Triangulate convex polygons as fans about their last corner, with the triangles in the order of ear clipping."""
     triangles = fans(starts, sizes)
     first = np.repeat(starts + sizes - 1, np.maximum(sizes - 2, 0))
     return np.stack([first, triangles[:, 1] - 1, triangles[:, 2] - 1], axis=1)
@@ -78,7 +78,7 @@ def _fans_about_the_last(starts: Ints, sizes: Ints) -> Ints:
 def _halves(points: Floats, starts: Ints) -> Ints:
     """Split quadrilaterals, which may be bent, along a diagonal; return triangles as corner indices.
 
-    It starts at the first corner with more than pi between its edges (reflex), else at the first, as in OpenRAVE.
+    As in OpenRAVE, the diagonal starts at the first reflex corner (more than pi between its edges), else at the first.
     """
     around = (np.arange(4)[:, np.newaxis] + np.arange(1, 4)) % 4  # for each corner the three others
     corners = points[starts[:, np.newaxis] + np.arange(4)]

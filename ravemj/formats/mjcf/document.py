@@ -140,8 +140,8 @@ def _write_option(out: XmlLines, scene: Scene, options: Options) -> None:
 def _memory(lines: Sequence[str]) -> str:
     """Return the ``memory`` size, such as "40M", that MuJoCo's broad phase needs; empty if the default suffices.
 
-    The default grows with the square of the number of DOFs (60 bytes, measured on MuJoCo 4.0), the required memory
-    with the square of the number of bodies (4.05 bytes).
+    In bytes, the default is 60 times the square of the number of DOFs (measured on MuJoCo 4.0), the required memory
+    4.05 times the square of the number of bodies.
     """
     bodies = sum("<body " in line for line in lines)
     dofs = sum(("<joint " in line) + 6 * ("<freejoint" in line) for line in lines)

@@ -46,8 +46,8 @@ def legal_inertial(inertial: Inertial) -> Inertial:
 def _nearest(small: float, middle: float, large: float) -> Vec3:
     """Project sorted principal moments of inertia onto those that satisfy the triangle inequality, by least squares.
 
-    The projection is onto the plane on which the largest is the sum of the others or, if a moment becomes negative
-    there, onto the edge on which the smallest is 0 and the others are equal.
+    If the given moments violate it, the largest result is the sum of the others. If the smallest would become
+    negative, it is 0, and the others are equal.
     """
     excess = (large - small - middle) / 3
     if excess <= 0:

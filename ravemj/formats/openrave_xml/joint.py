@@ -131,7 +131,7 @@ class _JointElement:
         self.parameters = self.context.with_parameter(self.parameters, element)
 
     def _set_all(self, element: Element, name: str, factor: float) -> None:
-        """Read a number for each axis, by default the previous one, and multiply it by ``factor`` (gap-38)."""
+        """Read a number for each axis, by default the axis's present value; multiply either by ``factor`` (gap-38)."""
         before = [axis[name] if name in axis else float(getattr(_PLAIN_AXIS, name)) for axis in self.axes]
         values = numbers(element, len(self.axes), self.context.diagnostics, before)
         if name in _NOT_NEGATIVE:

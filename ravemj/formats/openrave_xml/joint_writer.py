@@ -113,7 +113,7 @@ class JointWriter:
             self._diagnostics.warn("not-written", message, joint.source)
 
     def _slider_frame(self, joint: Joint) -> int:
-        """Return the link whose origin is a slider's anchor: the child if only its origin is there, else the parent."""
+        """Return the frame of a slider: the child link if only its origin is at the anchor, else the parent link."""
         parent, child = self._poses[joint.parent], self._poses[joint.child]
         anchor = parent.apply(joint.anchor)
         near = [math.dist(link.position, anchor) < _NEAR for link in (parent, child)]

@@ -95,7 +95,7 @@ def uniform(scale: Vec3, source: Source, context: Context) -> float:
 
 
 def _join(body: BodyBuilder, other: BodyBuilder) -> None:
-    """Move ``other`` so that its first link, if ``body`` has it, coincides; then merge equally named links."""
+    """Merge ``other`` into ``body`` by link names; first move it so that its first link fits the equally named one."""
     places = [body.find_link(link.name) for link in other.links]
     T_body_other = Pose()
     if places[0] is not None:

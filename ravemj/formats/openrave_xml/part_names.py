@@ -55,7 +55,7 @@ class PartNames:
 
 
 def _renamed(kind: str, part: Link | Joint, body: KinBody, known: set[str], diagnostics: Diagnostics) -> str:
-    """Return a valid name for a link or joint that is not in ``known`` (lower case), add it there, and warn."""
+    """Return a valid, unused name for a link or joint; add it to the used names ``known`` (lower case), and warn."""
     name = "_".join(words(part.name)) or kind
     numbered = (f"{name}_{count}" for count in range(1, len(known) + 2))
     given = next(other for other in numbered if other.lower() not in known)

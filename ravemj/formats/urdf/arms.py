@@ -41,7 +41,7 @@ def guess(
 
 
 def _arms(tools: list[str], tree: RobotTree) -> list[ManipulatorBuilder]:
-    """Return one arm for each last joint before a tool link, in the order of the effectors in the file."""
+    """Return an arm for each tool link, in file order; of tools with the same last joint, only the first gets one."""
     arms: dict[str, ManipulatorBuilder] = {}  # by the last joint
     dofs = {link: _dofs(link, tree) for link in tools}
     for link in tools:
@@ -85,6 +85,6 @@ def base_of(tree: RobotTree, link: str) -> str:
 
 
 def _is_beyond(link: str, dofs: dict[str, list[UrdfJoint]], tree: RobotTree) -> bool:
-    """Return whether a link is below the tool of another arm, so that joints of its gripper move the link."""
+    """Return whether a link is below the tool of another arm, and moved by joints of that arm's gripper."""
     above = {joint.parent for joint in tree.path(link) or []} & dofs.keys()
     return any(len(dofs[other]) >= _LEAST_DOFS and dofs[other][-1] is not dofs[link][-1] for other in above)

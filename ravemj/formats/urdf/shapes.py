@@ -151,7 +151,7 @@ class UrdfShapeReader:
         )
 
     def _material(self, element: Element) -> Material | None:
-        """Return the material of a ``<visual>``, defined there or by name; None if it has none or it is unknown."""
+        """Return the material that a ``<visual>`` defines or names; None for no material or an unknown name."""
         material = only(element, "material", self.context)
         if material is None:
             return None

@@ -222,8 +222,9 @@ class _Srdf:
     def _parent_group(self, element: Element, link: str, own: str) -> str | None:
         """Return the name of the arm's group for the end effector at ``link`` with the group ``own``, or None.
 
-        It is the attribute ``parent_group``, which or_urdf required. If this is missing, as in current files, it is
-        ``own`` if its chain leads to the link, else the group with the longest chain that ends at the link.
+        It is the attribute ``parent_group``, which or_urdf required. If the attribute is missing, as in current files,
+        the arm's group is ``own`` if its chain leads to ``link``, else the group with the fewest joints whose chain
+        does; groups whose end link is ``link`` have priority.
         """
         given = element.attributes.get("parent_group", "")
         if given:

@@ -32,11 +32,11 @@ SHADOW_SIZE = 1024
 _SHADOW_REACH = 1.05
 """Half the side of the shadow map, relative to the radius of the scene.
 
-MuJoCo's offset against self-shadowing is proportional to it: 1 gives shadow artefacts on surfaces far from the light.
+MuJoCo's offset against self-shadowing is proportional to this side; at 1, surfaces far from the light show artefacts.
 """
 
 _SHADOW_DISTANCE = 1.1
-"""Distance of lights from the centre of their shadow maps [radii of the scene]; the floor is farther away."""
+"""Distance of lights from the centre of their shadow maps, less the camera's near depth [radii of the scene]."""
 
 _SLICES, _STACKS = 48, 24
 """Facets around and along round shapes; with MuJoCo's 28 and 16, edges are visible in close-ups."""

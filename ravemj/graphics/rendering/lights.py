@@ -21,7 +21,7 @@ _MOST = 8
 """Maximum number of lights in OpenGL."""
 
 _PARTS = 4
-"""Number of adjacent lights that replace a light with shadows, to soften these."""
+"""Number of adjacent lights that replace a light with shadows, so that the shadows have soft edges."""
 
 
 def place_lights(

@@ -41,7 +41,7 @@ def _packed_floor(floor: Floor | None) -> dict[str, Any] | None:
 
 
 def _packed_lights(model: mujoco.MjModel, look: Look) -> list[dict[str, Any]]:
-    """Return the lights of a look as JSON data of directional lights; the model's are in their initial pose."""
+    """Return a look's lights as JSON data of directional lights; those of the model are in their initial pose."""
     own = [light for light in map(model.light, range(model.nlight)) if not light.name.startswith(STUDIO_PREFIX)]
     of_model = [
         {name: getattr(light, name).tolist() for name in ("ambient", "diffuse", "specular")}

@@ -60,7 +60,10 @@ def mechanism(world: WorldModel, bodies: Sequence[BodyState]) -> dict[str, Any]:
 
 
 def _sliders(world: WorldModel, body: BodyState, *, several: bool) -> Iterator[Slider]:
-    """Yield a slider for each DOF that moves hinge or slide joints, with tables computed on a copy of the body."""
+    """Yield a slider for each DOF that moves hinge or slide joints, with tables computed on a copy of the body.
+
+    If there are ``several`` bodies, the names of the sliders start with the body's name.
+    """
     copy = body.simulation.create(body.scene).own_kinematics
     first, values = world.part(body).qpos.start, body.kinematics.values()
     joints = {int(address): joint for joint, address in enumerate(world.model.jnt_qposadr)}
@@ -111,7 +114,10 @@ def _joint(world: WorldModel, joint: int) -> dict[str, Any]:
 
 
 def _placed(world: WorldModel, body: int, moving: Sequence[int], driven: Sequence[int]) -> dict[str, Any]:
-    """Return a moving body as JSON data: joints, and pose without joint motion in its moving parent or the world."""
+    """Return a moving body as JSON data: its driven joints, and its pose in its moving parent, else in the world.
+
+    The pose is that without joint motion or, if the body has no driven joints, the present one.
+    """
     model, data = world.model, world.data
     first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
     joints = [joint for joint in range(first, first + count) if joint in driven]

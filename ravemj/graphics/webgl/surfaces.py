@@ -19,7 +19,7 @@ _SLICES, _STACKS = 40, 20
 """Facets around and along round shapes."""
 
 _SHARP = 0.8
-"""Cosine of the angle between vertex and face normal above which MuJoCo shades a corner smoothly."""
+"""Minimum cosine of the angle between vertex and face normal at which MuJoCo shades a corner smoothly."""
 
 _PLANE = 1000.0
 """Half the side [m] of the square that represents an infinite plane."""

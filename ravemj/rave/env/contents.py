@@ -132,7 +132,7 @@ class Contents(EnvironmentPart):
             self.AddKinBody(interface, addMode)
 
     def _add_other(self, interface: object) -> None:
-        """Accept a viewer of this environment, which is already attached; raise an error for any other object."""
+        """Do nothing for a viewer of this environment, which is attached already; raise an error for other objects."""
         if any(interface is viewer for viewer in self._viewers):
             return
         kind = "None" if interface is None else type(interface).__name__

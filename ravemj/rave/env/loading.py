@@ -274,7 +274,7 @@ class Loading(Description):
     def _hold(
         self, holder: BodyState, grabs: Sequence[Grab], added: Mapping[str, BodyState], diagnostics: Diagnostics
     ) -> None:
-        """Make a body grab the bodies that its file declares as grabbed; warn of unknown ones."""
+        """Make a body grab the bodies that its file declares as grabbed; warn of those not in ``added``."""
         for grab in grabs:
             held = added.get(grab.body)
             if held is None or held is holder:

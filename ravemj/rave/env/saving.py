@@ -170,7 +170,7 @@ SaveArguments = str | Mapping[str, str] | Sequence[tuple[str, str]]
 """Argument ``atts`` of ``Save``: the name of a body, or strings by name; in pairs a name may be repeated."""
 
 _WITH_SENSORS = (SelectionOptions.Everything, SelectionOptions.AllExceptBody)
-"""Selections of objects to save that include sensors without a robot."""
+"""Options of ``Save`` for which sensors that are not attached to robots are saved, too."""
 
 _NO_MASS = Inertial(1e-10, ZERO, ((1e-7, 0.0, 0.0), (0.0, 1e-7, 0.0), (0.0, 0.0, 1e-7)))  # as without <rigid_body>
 
@@ -320,7 +320,7 @@ class Saving(Description):
 
 
 def _checked(atts: SaveArguments | None, diagnostics: Diagnostics) -> list[tuple[str, str]]:
-    """Return the save options as pairs of name and value; a string is the option ``target``."""
+    """Return the save options as pairs of name and value; if ``atts`` is a string, it is the value of ``target``."""
     if isinstance(atts, str):
         return [("target", atts)]
     pairs = list((atts.items() if isinstance(atts, Mapping) else atts) or ())

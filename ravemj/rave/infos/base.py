@@ -218,7 +218,7 @@ class _Called:
 
 
 def _calls(prefix: str, fields: Mapping[str, object]) -> Iterator[tuple[str, object]]:
-    """Yield name and value of the fields ``id`` and ``name``, whose keys have a prefix, unless a value is empty."""
+    """Yield name and value of the fields ``id`` and ``name`` unless empty; ``prefix`` precedes their keys."""
     for name in ("id", "name"):
         value = fields.get(prefix + name)
         if value and isinstance(value, str):

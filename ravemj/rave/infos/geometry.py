@@ -377,7 +377,7 @@ class GeometryInfo(GeometrySizes):
         return info
 
     def _take(self, shape: scene.Shape) -> None:
-        """Set the size fields from a shape: one field per vector size; the first field has all scalar sizes."""
+        """Set the size fields from a shape: one for each vector size; all scalar sizes are in ``_vGeomData``."""
         vectors, numbers = iter(VECTORS), list[float]()
         for size in shape.sizes():
             value = getattr(shape, size.name)
@@ -447,7 +447,7 @@ class GeometryInfo(GeometrySizes):
         return numbers[:count].tolist()
 
     def _mesh(self) -> scene.Mesh:
-        """Return the mesh ``_meshcollision``, or that of the collision or render file if it is None."""
+        """Return the mesh ``_meshcollision``; if that is None, the collision file's, else the render file's mesh."""
         if self._meshcollision is not None:
             return checked_mesh(self._meshcollision, "GeometryInfo._meshcollision")
         collision = _file(self._filenamecollision, self._vCollisionScale)
@@ -475,7 +475,7 @@ class GeometryInfo(GeometrySizes):
     def _display(self) -> tuple[scene.Surface, ...] | None:
         """Return the surfaces drawn instead of the shape; None if the shape itself is drawn.
 
-        They are those of the geometry that this info was made from, unless another file has been set.
+        They are those of the geometry that this info was made from, unless the render file has been changed.
         """
         name, surfaces = self._drawn
         file = _file(self._filenamerender, self._vRenderScale)

@@ -280,7 +280,7 @@ _OTHER_NAMES = {
     "time_measurement": "scan_time",
     "time_scan": "scan_time",
 }
-"""Info fields with another name in devices. Devices lack some other fields, which infos only store."""
+"""Device attribute of each info field with another name there. Info fields that devices lack are only stored."""
 
 
 def geometry_of(device: scene.Device) -> SensorGeometry:
@@ -343,7 +343,7 @@ def _shared(geometry: SensorGeometry, device: scene.Device) -> Iterator[tuple[st
 
 
 def _is_angle(field: str, kind: Any) -> bool:  # noqa: ANN401 - a type
-    """Return whether an info field has angles about two axes; devices have only the first."""
+    """Return whether an info field has an angle for each of two axes; devices have only the first of these angles."""
     return kind is float and field in {"min_angle", "max_angle", "resolution"}
 
 

@@ -373,7 +373,7 @@ class Manipulator(ArmIk):
                 return checker.answer(world, find(world, self._state, self._scene), report)
 
     def _moved(self, world: CollisionWorld, T_world_tool: Floats | None) -> AbstractContextManager[None]:
-        """Context manager that moves the links beyond the arm and their grabbed bodies to a tool goal."""
+        """Context manager that moves the end effector's links, and bodies grabbed by them, to a tool goal."""
         if T_world_tool is None:
             return nullcontext()
         return world.moved(arms.motions_of_end(self._state, self._scene, T_world_tool @ inverse(self.GetTransform())))

@@ -209,7 +209,10 @@ class Manipulation:
         wanted: Sequence[Sequence[Floats]],
         moved: Sequence[Sequence[Floats]],
     ) -> None:
-        """Extend a motion to the original start and goal if the planner used jittered ones."""
+        """Extend a motion to the original start and goal if the planner used jittered ones.
+
+        ``wanted`` has the original starts and goals, ``moved`` the jittered ones.
+        """
         spec = ConfigurationSpecification.of(groups)
         for end, (asked, used) in enumerate(zip(wanted, moved, strict=True)):
             place = traj.GetNumWaypoints() if end else 0
@@ -489,7 +492,7 @@ _CAUSES = {
     IkReturnAction.RejectSelfCollision: Cause.SELF_COLLISION,
     IkReturnAction.RejectCustomFilter: Cause.FILTER,
 }
-"""Failure causes by OpenRAVE's codes; all others are collisions with other bodies."""
+"""Failure causes by OpenRAVE's codes; any other code means a collision with another body."""
 
 
 def _without_solutions(manip: Manipulator, goals: Sequence[IkParameterization]) -> PlanningError:

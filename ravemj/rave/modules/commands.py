@@ -305,7 +305,7 @@ def _move_hand_straight(base: BaseManipulation, arguments: str) -> str:
 
 
 def _move_unsync_joints(base: BaseManipulation, arguments: str) -> str:
-    """Move the active DOFs to a configuration from which other joints can reach values without collisions."""
+    """Move the active DOFs to a configuration at which other joints can move to given values without collisions."""
     readers: dict[str, Reader] = {**_OUTPUT, "handjoints": _hand, **readers_of(UnsyncMotion)}
     options = read_options(arguments, readers)
     hand, indices = options.get("handjoints", (np.zeros(0), []))
@@ -319,7 +319,7 @@ def _jitter_active(base: BaseManipulation, arguments: str) -> str:
 
 
 def _set_minimum_goal_paths(module: BaseManipulation | TaskManipulation, arguments: str) -> str:
-    """Set the minimum number of goal paths to compare, which has no effect: ravemj returns the first path."""
+    """Accept a minimum number of goal paths to compare, which has no effect: ravemj returns the first path."""
     del module
     Tokens(arguments).count()
     return ""
@@ -356,7 +356,7 @@ def _close_fingers(task: TaskManipulation, arguments: str) -> str:
 
 
 def _release_fingers(task: TaskManipulation, arguments: str) -> str:
-    """Open the gripper and release a body."""
+    """Open the gripper, and release the grabbed body that the arguments name, if any."""
     options = _gripper_options(task, arguments)
     target = _named_body(task, options["target"]) if "target" in options else None
     motion = task.release_fingers(options.get("movingdir"), target, finger_steps(options))
@@ -452,7 +452,7 @@ _TOOL_GOAL: Mapping[str, Callable[[Tokens], IkParameterization]] = {
 """Readers of options with one tool goal."""
 
 _TOOL_GOALS = {"matrices": "matrix", "poses": "pose", "ikparams": "ikparam"}
-"""Options that give several tool goals, and the option for one goal whose reader they repeat."""
+"""Options with a list of tool goals, and the option with one goal of the same form."""
 
 _CONSTRAINT: Mapping[str, Reader] = {
     **dict.fromkeys(("constraintmatrix", "constrainttaskmatrix"), Tokens.matrix),

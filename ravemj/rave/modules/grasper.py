@@ -291,7 +291,7 @@ class GraspSimulation(Manipulation):
         return {int(dof): float(known.get(int(dof), 0.0)) for dof in self.robot.GetActiveDOFIndices()}
 
     def _closing(self) -> Floats:
-        """Return the velocities of all DOFs when all grippers close, shape (dof,); their magnitude is 1."""
+        """Return the velocity of each DOF if all grippers close, shape (dof,): each is 1, -1 or 0."""
         speeds = np.zeros(self.robot.GetDOF())
         for manip in self.robot.GetManipulators():
             speeds[manip.GetGripperIndices()] = manip.GetChuckingDirection()
@@ -321,7 +321,7 @@ class GraspSimulation(Manipulation):
 
 
 def _sweep_part(content: bytes, span: tuple[int, int]) -> list[tuple[int, Found]]:
-    """Simulate a range of candidates in a worker process; return the accepted grasps without their target."""
+    """Simulate a range of candidates in a worker process; return the accepted ones, with ``target`` set to None."""
     robot, candidates, request, sweep = _unpickled(content)
     simulation = GraspSimulation(robot.GetEnv())
     simulation.choose(robot.GetName())

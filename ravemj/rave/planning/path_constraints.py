@@ -82,7 +82,10 @@ def add_manifold(values: Values, new: Manifold) -> None:
 def _lacking(
     bodies: Bodies, given: object, manip: Callable[[], Manipulator], holding: KinBody | None
 ) -> Lacking | None:
-    """Return the error function of a constraint set; None if the set only has a membership test."""
+    """Return the error function of a constraint set; None if the set only has a membership test.
+
+    Regions refer to the tool or, if given, to the grabbed body ``holding``.
+    """
     if isinstance(given, Sets):
         parts = [_lacking(bodies, member, manip, holding) for member in given.members]
         known = [part for part in parts if part is not None]
@@ -100,7 +103,7 @@ def _lacking(
 def _test(
     bodies: Bodies, given: object, manip: Callable[[], Manipulator], tolerance: float, holding: KinBody | None
 ) -> Constraint:
-    """Return the membership test of a constraint set; it tests the configuration of the bodies when it is called."""
+    """Return the membership test of a constraint set; for regions, it tests the bodies' present configuration."""
     if isinstance(given, Sets):
         tests = [_test(bodies, member, manip, tolerance, holding) for member in given.members]
         combine = any if given.any else all

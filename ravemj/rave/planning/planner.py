@@ -178,7 +178,7 @@ class Planner(Interface):
     _interface_type = InterfaceType.planner
     _internal = ("run",)
     _takes_text: ClassVar[bool] = False
-    """Whether the planner accepts parameters as text. Texts do not name bodies, so only retimers and smoothers do."""
+    """Whether the planner accepts parameters as text: only retimers and smoothers do, as a text cannot name bodies."""
     _defaults: ClassVar[Mapping[str, str]] = {}
     """Default texts of the planner-specific parameters, by tag."""
 

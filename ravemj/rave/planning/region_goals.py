@@ -160,7 +160,8 @@ class _PoseSolver:
     def solve(self, region: int, T_world_tool: Floats, random: np.random.Generator) -> PoseSolutions:
         """Return all IK solutions for a pose of a region, including those that differ by full turns.
 
-        Solvers of other goal types leave a part of the pose free; their solutions are projected onto the region.
+        Solvers of goal types other than poses leave a part of the pose free; their solutions are projected onto the
+        region.
         """
         kind = _Type.Transform6D if self._given is None else self._given.kind
         base = self._manip.GetBase()
@@ -235,8 +236,8 @@ class _PoseSolver:
 def _some(rows: Floats, near: Floats, random: np.random.Generator) -> Floats:
     """Return at most ``_MOST_ROWS`` of many IK solutions.
 
-    Of those that differ by full turns, the ones nearest to ``near`` come first, in random order: paths to the others
-    are long and reach the same tool pose.
+    Of each set of solutions that differ by full turns, the one nearest to ``near`` has priority: paths to the others
+    are longer and reach the same tool pose. The order is random among the nearest ones.
     """
     rows = rows[np.argsort(np.linalg.norm(rows - near, axis=1), kind="stable")]
     first = np.unique(np.round(np.mod(rows, 2 * np.pi), 6), axis=0, return_index=True)[1]
@@ -245,7 +246,7 @@ def _some(rows: Floats, near: Floats, random: np.random.Generator) -> Floats:
 
 
 def _repaired(values: Values, error: Error, row: Floats) -> Floats | None:
-    """Project a configuration onto both the constraint and a region; None if that fails."""
+    """Project a configuration onto both the constraint and a region; None if that fails, or without constraint."""
     manifold = values.conditions.manifold
     if manifold is None:
         return None

@@ -127,7 +127,7 @@ class _AsciiParser:
         return node
 
     def _item(self, node: InventorNode, token: str) -> None:
-        """Parse a field, child, interface or route in a node's body, and add it to the node; ``token`` is its first."""
+        """Parse a field, child, interface or route whose first token is ``token``, and add it to the node."""
         if token in _INTERFACE and node.kind == "Script":
             self._interface(token)
         elif token in ("DEF", "USE", "PROTO", "EXTERNPROTO", "ROUTE", "NULL") or self._peek() == "{":
