@@ -203,7 +203,7 @@ def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> 
 
 
 def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_start: bool) -> list[float]:
-    """Return the time [s] at which each pair's distance first reaches ``APART``, searched from start or end."""
+    """Return when each pair's distance first reaches ``APART`` [s], from the start on or from the end backwards."""
     begin, finish = curves[0].start, curves[-1].end
     times = np.linspace(begin, finish, _SEARCH + 1) if is_start else np.linspace(finish, begin, _SEARCH + 1)
     times_apart, left = np.full(len(pairs), times[-1]), np.ones(len(pairs), dtype=bool)
@@ -285,7 +285,7 @@ def _note_nearest(proof: Proof, spaces: Spaces, intervals: Intervals, cases: Cas
 
 
 def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof) -> None:
-    """Set ``proof.smallest_gap`` near the smallest measured distance, by subdividing the critical intervals."""
+    """Set ``proof.smallest_gap`` to a close lower bound of the smallest distance, by subdividing critical intervals."""
     proved, rest = _smallest(every)
     for _ in range(_REFINEMENTS):
         wanted = proof.nearest[0] - max(_TOLERANCE, _PART * proof.nearest[0])
