@@ -205,7 +205,7 @@ class ClosedForm:
         return turns[:, self._order].transpose(1, 2, 0)[..., None]
 
     def _motion(self, poses: Floats, locked: dict[int, Floats]) -> Transform:
-        """Return the required motion of the joints, or the required tool position; lengths are divided by the reach."""
+        """Return the required joint motion, or tool position for tasks of position; the unit of length is the reach."""
         whole = self.task in (Task.TRANSFORM, Task.PLANAR)
         motion = poses @ self._tool if whole else poses
         rotation = np.ascontiguousarray(motion[:, :3, :3].transpose(1, 2, 0))[:, :, None]

@@ -136,7 +136,7 @@ def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tu
 def _descents(
     solver: "ArmSolutions", pose: Floats, solutions: Solutions, missed: Floats, places: Ints, most: int = _MOST_DESCENTS
 ) -> Iterator[Found]:
-    """Yield solutions from numeric descents, started at the samples and branches ``places`` (K, 2) of least excess."""
+    """Yield solutions from descents, started at those ``most`` samples and branches ``places`` with least excess."""
     for sample, branch in _distinct(missed, places, most).tolist():
         reached = solver.numeric.descend(pose, clamped(solver.chain, solutions.values[sample, branch]))
         if reached.error < ACCURATE:
