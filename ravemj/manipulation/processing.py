@@ -176,7 +176,7 @@ class Processor:
     # Smoothers
 
     def _smoothed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> tuple[Waypoints, Certificate | None]:
-        """Replace parts of a path by collision-free shortcuts, and time the result."""
+        """Shorten a path by collision-free shortcuts and time it; ``rows`` returns the path's values of some groups."""
         self._check_layout(path)
         points, coordinates = rows(self.groups), self.limits.coordinates
         if len(points) < 2:

@@ -283,7 +283,7 @@ def _angular(affine: int, axis: Vec3) -> Floats:
 
 
 def _moved(pose: Pose, twist: Sequence[float]) -> Pose:
-    """Return a pose after a displacement of its origin and a rotation by a vector, in world axes."""
+    """Return a pose after a twist: a displacement of its origin and a rotation vector, both in world axes."""
     (x, y, z), (dx, dy, dz, a, b, c) = pose.position, twist
     angle = math.sqrt(a * a + b * b + c * c)
     half = math.sin(angle / 2) / angle if angle > 1e-12 else 0.5
