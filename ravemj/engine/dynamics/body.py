@@ -342,7 +342,7 @@ class BodyDynamics:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
-        """Write the sum of DOF, velocity-dependent and ``external`` root accelerations, (6,) each, into ``qacc``."""
+        """Write the sum of DOF, velocity-dependent and root accelerations into ``qacc``; ``external`` is per root."""
         qacc = self._qacc
         if accelerations is None:
             qacc[...] = 0.0

@@ -133,7 +133,7 @@ def _product(value: float, factor: str, power: int) -> str:
 
 
 def _image(model: mujoco.MjModel, tree: BodyTree, follower: _Follower, constant: float) -> tuple[float, float]:
-    """Return a mimic joint's smallest and largest value within its leaders' limits, for its equation's constant."""
+    """Return the range of a mimic joint within its leaders' limits; ``constant`` is the constant of its equation."""
     low = high = constant
     for leader, coefficients in zip(follower.leaders, follower.coefficients, strict=True):
         axis = tree.joints[leader].axes[0]
