@@ -300,7 +300,7 @@ def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof)
 
 
 def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
-    """Return the intervals with the smallest bounds, as many as can be refined, and the least bound of the others."""
+    """Return the intervals that refinement may subdivide, those with the least bounds, and the next larger bound."""
     most, proved = _REFINEMENTS * _REFINED, list[_Proved]()
     for (times, control), cases, _, bounds, _ in every:
         least = np.full(len(times), np.inf)
@@ -313,7 +313,7 @@ def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
 
 
 def _raised(spaces: Spaces, near: Sequence[_Proved], wanted: float, proof: Proof) -> list[_Proved]:
-    """Return the parts of intervals, with new lower bounds for pairs whose bounds are below ``wanted`` [m]."""
+    """Subdivide intervals; return the parts, with new lower bounds for pairs whose bounds are below ``wanted`` [m]."""
     whole = Intervals(np.array([interval.times for interval in near]), np.array([each.control for each in near]))
     parts, origins = whole.parts(np.full(len(near), _CUTS))
     known = np.full((len(origins), spaces.pair_count), np.inf)
