@@ -151,7 +151,7 @@ class PoseSet:
         return -displacement, rates
 
     def _displaced(self, D: Floats) -> tuple[Floats, Floats]:
-        """Return the coordinates of the relative pose ``D`` that exceed the bounds least, and by how much they do."""
+        """Return the coordinates of the relative pose ``D``, its angles chosen for least excess, and their excess."""
         if self.lean is not None:
             return self._leaned(D, self.lean)
         best, least = None, math.inf
