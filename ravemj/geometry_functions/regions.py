@@ -151,7 +151,7 @@ class PoseSet:
         return -displacement, rates
 
     def _displaced(self, D: Floats) -> tuple[Floats, Floats]:
-        """Return the coordinates of the relative pose ``D`` that exceed the bounds least, and by how much they do."""
+        """Return the coordinates of the relative pose ``D``, its angles chosen for least excess, and their excess."""
         if self.lean is not None:
             return self._leaned(D, self.lean)
         best, least = None, math.inf
@@ -222,7 +222,7 @@ def _beyond(value: float, lower: float, upper: float) -> float:
 
 
 def _split(total: float, side: float, rolls: tuple[float, float], yaws: tuple[float, float]) -> tuple[float, float]:
-    """Return the roll and yaw nearest to their bounds with ``roll - side * yaw = total``, at a pitch of +-pi/2."""
+    """Return roll and yaw nearest to their bounds with ``roll - side * yaw = total``, at a pitch of side * pi/2."""
     wide, wide_yaw = rolls[1] - rolls[0], yaws[1] - yaws[0]
     first = rolls[0] - side * (yaws[1] if side > 0 else yaws[0])
     last = first + wide + wide_yaw
@@ -261,7 +261,7 @@ def _leaning(angles: Floats) -> Floats:
 
 
 def _angle_rates(pitch: float, yaw: float) -> Floats:
-    """Return the Jacobian of (roll, pitch, yaw) by the angular velocity in the region's frame *w*, shape (3, 3)."""
+    """Return the matrix, (3, 3), from angular velocity in the region's frame *w* to roll, pitch and yaw rates."""
     cosine, sine = math.cos(pitch), math.sin(pitch)
     cosine = math.copysign(max(abs(cosine), _LOCK), cosine)
     c, s = math.cos(yaw), math.sin(yaw)
@@ -269,7 +269,7 @@ def _angle_rates(pitch: float, yaw: float) -> Floats:
 
 
 def _lean_rates(D: Floats) -> Floats:
-    """Return the Jacobian of lean (first row) and yaw (last row) by the angular velocity in frame *w*, shape (3, 3)."""
+    """Return the matrix, (3, 3), from angular velocity in frame *w* to rates of lean (row 0) and yaw (row 2)."""
     x, y, z = D[:3, 2].tolist()
     level = math.hypot(x, y) or 1.0
     over = max(1 + z, _LOCK)

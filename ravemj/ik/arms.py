@@ -129,7 +129,7 @@ def _aside(body: KinBody, joint: int, number: int) -> _MovingAxis:
 
 
 class _Followers:
-    """Computes the values of all joints of an arm from its DOFs by mimic equations.
+    """Function from the DOFs of an arm to the values of all its joints, by mimic equations.
 
     Args:
         joints: All joints of the body; those that do not belong to the arm keep their loaded values.

@@ -103,7 +103,7 @@ def everything(
 def _groups(
     solver: ArmSolutions, goal: Floats, seed: Floats, free: Floats | None, *, limits: bool, fine: bool
 ) -> Iterator[Floats]:
-    """Yield IK solutions in batches, angles in [-pi, pi], each of shape (K, n)."""
+    """Yield IK solutions in batches of shape (K, n), angles in [-pi, pi]; arguments as in ``nearest_first``."""
     pose = goal_poses(solver.chain, solver.task, goal)
     if solver.closed is None:
         yield from _searched(solver, pose, seed)

@@ -28,9 +28,9 @@ _SAME = 1e-5
 _STEPS = 12
 """Maximum number of Newton steps."""
 _MOST_GROWTH = 2.0
-"""Ratio of the error to that of an accurate closed form above which Newton's method stops.
+"""Ratio of the error to the initial one above which Newton's method stops, for accurate closed forms.
 
-The error grows more beyond the border of the reach, where the family returns a double solution with an error.
+The error grows by more if the pose is just out of reach, where the family returns an inexact double solution.
 """
 _SETTLED, _SLOWEST = 3, 0.5
 """Number of Newton steps before convergence is checked, and the maximum error ratio of a later step.
@@ -205,7 +205,7 @@ class ClosedForm:
         return turns[:, self._order].transpose(1, 2, 0)[..., None]
 
     def _motion(self, poses: Floats, locked: dict[int, Floats]) -> Transform:
-        """Return the required motion of the joints, or the required tool position; lengths are divided by the reach."""
+        """Return the required joint motion, or tool position for tasks of position; the unit of length is the reach."""
         whole = self.task in (Task.TRANSFORM, Task.PLANAR)
         motion = poses @ self._tool if whole else poses
         rotation = np.ascontiguousarray(motion[:, :3, :3].transpose(1, 2, 0))[:, :, None]
@@ -287,7 +287,7 @@ def _filled(values: Floats, shape: tuple[int, ...]) -> Floats:
 
 
 def _merge(parts: Floats, valid: Bools, merged: Bools) -> None:
-    """Mark all but one of equal solutions as invalid; they occur if two axes or two branches coincide.
+    """Mark all but one of equal solutions, as of coinciding axes or branches, as invalid, and their poses as merged.
 
     ``parts`` are cosines, sines and distances of all joints, shape (K, B, N); ``valid`` (B, N) and ``merged`` (N,) are
     changed. Equal rows have equal sums with fixed weights, so only neighbours in the order of these sums are compared.

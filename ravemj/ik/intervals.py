@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     from ravemj.ik.solver import ArmSolutions
 
 _STEEP = 1.0
-"""Ratio of a minimum of the excess to the rise beside it, up to which the excess may reach 0 between samples."""
+"""Multiple of the rise to the higher neighbouring sample up to which a minimum of the excess is searched."""
 _CLOSE, _VERY_CLOSE = 0.5, 0.05
 """Maximum excess from which a descent is started: from minima of the excess, and from other samples."""
 _ENOUGH = 32
-"""Number of samples of the free joint below which twice this number is added."""
+"""Number of samples of the free joint below which 2 * ``_ENOUGH`` further samples are added."""
 _MOST_VALLEYS, _FIRST_VALLEYS = 6, 2
 """Maximum number of samples with a minimum of the excess that are searched around, and how many come first."""
 _MOST_DESCENTS, _LAST_DESCENTS = 12, 4
@@ -136,7 +136,7 @@ def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tu
 def _descents(
     solver: "ArmSolutions", pose: Floats, solutions: Solutions, missed: Floats, places: Ints, most: int = _MOST_DESCENTS
 ) -> Iterator[Found]:
-    """Yield solutions from numeric descents, started at the samples and branches ``places`` (K, 2) of least excess."""
+    """Yield solutions from descents, started at those ``most`` samples and branches ``places`` with least excess."""
     for sample, branch in _distinct(missed, places, most).tolist():
         reached = solver.numeric.descend(pose, clamped(solver.chain, solutions.values[sample, branch]))
         if reached.error < ACCURATE:
@@ -186,7 +186,7 @@ def intervals(solver: "ArmSolutions", pose: Floats, free: Floats, *, limits: boo
 def _ends(
     solver: "ArmSolutions", pose: Floats, branch: Ints, inside: Floats, outside: Floats, *, limits: bool
 ) -> Floats:
-    """Return the ends, shape (C,), of intervals of the free joint, by section between ``inside`` and ``outside``."""
+    """Return ends of intervals of the free joint, shape (C,), by subdivision between ``inside`` and ``outside``."""
     steps = np.arange(_PARTS + 2) / (_PARTS + 1)
     rows = np.arange(len(branch))
     for _ in range(_SECTIONS if len(branch) else 0):

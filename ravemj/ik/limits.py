@@ -59,9 +59,9 @@ def clamped(chain: Chain, values: Floats) -> Floats:
 
 
 def _turns_beyond(chain: Chain, values: Floats) -> tuple[Floats, Floats]:
-    """Return by how much values are below the lower and above the upper limits, modulo a turn, in [0, 2 pi].
+    """Return how far angles are below the lower and above the upper limits, modulo full turns, in [0, 2 pi].
 
-    Both are 0 if a value is within its limits after some full turns.
+    Both are 0 if the angle plus some number of full turns is within the limits.
     """
     lower, upper = chain.bounds
     below, above = lower - values, values - upper

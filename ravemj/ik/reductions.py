@@ -61,10 +61,10 @@ def _centred(chain: Chain, task: Task) -> Reduction:
 
 
 def _with_joints(chain: Chain, sliding: list[bool], task: Task, how: str) -> Reduction:
-    """Reduce a task by adding virtual joints along or about the tool's direction.
+    """Reduce a task by adding virtual joints along or about the tool's direction; ``how`` describes the reduction.
 
-    They are inserted before real joints about the same line, with which they commute: if such a joint is locked, the
-    others stay adjacent.
+    They are inserted before final revolute joints about the same line, with which they commute. If such a revolute
+    joint is locked, the other joints stay adjacent.
     """
     axis, place = chain.T_base_tool[:3, :3] @ chain.direction, chain.T_base_tool[:3, 3]
     at = chain.dof

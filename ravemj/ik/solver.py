@@ -287,7 +287,7 @@ class ArmSolutions:
     def _best(
         self, solutions: Solutions, index: int, seed: Floats, weights: Floats | None, more: Floats | None = None
     ) -> Floats | None:
-        """Return the solution within the limits nearest to ``seed``; None if pose ``index`` and ``more`` have none."""
+        """Return the solution of pose ``index`` or in ``more`` within the limits and nearest to ``seed``, or None."""
         rows = solutions.of(index)
         rows = self.spread(rows, seed) if solutions.merged[index] else rows
         rows = rows if more is None else np.vstack([rows, more])

@@ -112,7 +112,7 @@ def save_picture(check: Check, verdict: Verdict, output: Path) -> None:
 
 
 def _add_robots(env: Environment, scene: Scene, check: Check, given: Floats, right: Floats) -> Floats:
-    """Add a scene's robot and, for joint values, a copy at the right values; return the pose of the answer's frame."""
+    """Add a scene's robot and, if answers are joint values, a copy at the right ones; return the answer's frame."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)
         env.Load(model_path(scene.model) if scene.model in SHIPPED_MODELS else scene.model)

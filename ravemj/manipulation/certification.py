@@ -175,7 +175,7 @@ def _pairs(world: CollisionWorld, bodies: Bodies, body: BodyState) -> Ints:
 
 
 def _chains(world: CollisionWorld, body: BodyState, bases: dict[BodyState, int]) -> list[tuple[int, Chain]]:
-    """Return each geom of a body and its grabbed bodies, with the joints that move it; base motions come last."""
+    """Return each geom of a body and its grabbed bodies, with the joints that move it, last those of a moving base."""
     model, ids = world.model.model, world.model.part(body).body_ids
     base = (bases[body], bases[body] + 1) if body in bases else ()
     chains = [Chain((*joints_above(model, int(link)), *base)) for link in ids]
@@ -192,7 +192,7 @@ def _geoms(world: CollisionWorld, body: BodyState, link: int) -> list[int]:
 
 
 def _rates(world: CollisionWorld, parts: Sequence[Part], bases: dict[BodyState, int]) -> Floats:
-    """Return the derivative of each joint by each value of a configuration, shape (n, joints).
+    """Return |d joint value / d configuration value|, shape (n, joints); ``bases`` are indices of virtual base joints.
 
     Raises:
         UncertifiableError: a value moves joints that are neither revolute nor prismatic, or mimic joints with a

@@ -240,7 +240,7 @@ class GraspSearch:
         return _unit(direction)
 
     def _approaches(self, T_world_tool: Floats, direction: Floats) -> list[Floats]:
-        """Return the arm's IK solutions at the start of the straight approach from which it reaches the grasp."""
+        """Return IK solutions at the start of the straight approach from which the arm can follow it to the grasp."""
         start = T_world_tool.copy()
         start[:3, 3] -= self._options.approachoffset * direction
         rows: list[Floats] = []
@@ -264,7 +264,7 @@ class GraspSearch:
             return len(follow_goals(self._hand.space, row, count, search)) == count + 1
 
     def _goals(self, T_target_tool: Floats) -> list[Floats]:
-        """Return the tool poses at the destinations where the target can be put down with a grasp."""
+        """Return the tool poses, for grasp ``T_target_tool``, at the destinations where the target can be put down."""
         options, goals = self._options, list[Floats]()
         count = len(self._places)
         for place in self._random.permutation(count).tolist() if options.randomdests else range(count):

@@ -141,7 +141,7 @@ class Processor:
     # Retimers
 
     def _retimed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> tuple[Waypoints, None]:
-        """Time waypoints within the velocity and acceleration limits. Collisions are ignored."""
+        """Time waypoints within the limits, ignoring collisions; ``rows`` returns the path's values of given groups."""
         profile, options, coordinates = profile_of(self.name, self.options), self.options, self.limits.coordinates
         is_base = bool(coordinates.translation or coordinates.rotation) and not self._is_of_goals()
         if is_base and profile.interpolation != "linear":
@@ -176,7 +176,7 @@ class Processor:
     # Smoothers
 
     def _smoothed(self, path: Waypoints, rows: Callable[[list[Group]], Floats]) -> tuple[Waypoints, Certificate | None]:
-        """Replace parts of a path by collision-free shortcuts, and time the result."""
+        """Shorten a path by collision-free shortcuts and time it; ``rows`` returns the path's values of some groups."""
         self._check_layout(path)
         points, coordinates = rows(self.groups), self.limits.coordinates
         if len(points) < 2:

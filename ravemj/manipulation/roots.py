@@ -154,7 +154,7 @@ class RegionRoots:
         return same[0] if same else -1
 
     def _draw(self, refuse: Refuse, region: int | None = None) -> list[Floats]:
-        """Sample a pose of a region, by default a random one; return the allowed IK solutions in random order."""
+        """Sample a pose of a region (None: a random region); return its allowed IK solutions in random order."""
         if region is None:
             region = int(self._random.choice(len(self._regions), p=self._weights))
         pose = self._regions[region].sample(self._random, 1, over_rotations=True)[0]

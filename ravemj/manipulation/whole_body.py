@@ -259,7 +259,7 @@ class Moving:
 
 
 def _carrier(robot: BodyState, body: BodyState, link: int) -> int | None:
-    """Return the robot's link that moves ``link`` of ``body``: itself, or the link that grabs the body; else None."""
+    """Return ``link`` if ``body`` is the robot, else the robot's link that carries ``body``, or None."""
     if body is robot:
         return link
     return next((grab.link for grab in robot.grabs if grab.body.carries(body)), None)
@@ -276,14 +276,14 @@ def _weight(body: BodyState) -> tuple[float, Floats]:
 
 
 def _angular(affine: int, axis: Vec3) -> Floats:
-    """Return the rotation axes of a base's affine DOFs as columns, shape (3, 0, 1 or 3)."""
+    """Return the rotation axes of a base's affine DOFs as columns: none, one (``RotationAxis``) or all three."""
     if affine & int(DOFAffine.RotationAxis):
         return np.array(axis).reshape(3, 1) / np.linalg.norm(axis)
     return np.eye(3) if affine & _ROTATION else np.zeros((3, 0))
 
 
 def _moved(pose: Pose, twist: Sequence[float]) -> Pose:
-    """Return a pose after a displacement of its origin and a rotation by a vector, in world axes."""
+    """Return a pose after a twist: a displacement of its origin and a rotation vector, both in world axes."""
     (x, y, z), (dx, dy, dz, a, b, c) = pose.position, twist
     angle = math.sqrt(a * a + b * b + c * c)
     half = math.sin(angle / 2) / angle if angle > 1e-12 else 0.5

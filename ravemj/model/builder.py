@@ -237,7 +237,7 @@ class BodyBuilder:
         return (*frozen, *(freeze_manipulator(built, body, Diagnostics()) for built in unfinished))
 
     def _frozen(self, poses: Sequence[Pose], joints: Sequence[scene.Joint], active: int) -> scene.KinBody:
-        """Return the immutable body with these link poses and without manipulators; ``active`` counts active joints."""
+        """Return the immutable body without manipulators; ``active`` is the number of active joints, listed first."""
         return scene.KinBody(
             name=self.name,
             is_robot=self.is_robot,

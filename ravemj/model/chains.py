@@ -87,7 +87,7 @@ class Connections:
 
 _MOST_BODIES = 16
 _known: dict[tuple[int, int, int], Connections] = {}
-"""Cache by the identity of the joints, limited to few bodies, since it keeps them alive."""
+"""Connections of bodies, cached by the identity of their joints; few, since the cache keeps joints alive."""
 
 
 def connections(body: KinBody) -> Connections:

@@ -119,7 +119,7 @@ def line_list(positions: Floats, width: float, rgba: Floats) -> Primitives:
 
 
 def _lines(positions: Floats, width: float, rgba: Floats, ends: Ints) -> Primitives:
-    """Return lines; a line with different end colours is divided into pieces of one colour each."""
+    """Return lines between points ``ends``, (N, 2); one with different end colours is divided into uniform pieces."""
     pieces = max(1, int(np.ceil(_SHADES * np.abs(np.diff(rgba[ends], axis=1)).max(initial=0))))
     cuts = np.arange(pieces + 1) / pieces
     at = positions[ends[:, 0], None] + cuts[:, None] * np.diff(positions[ends], axis=1)

@@ -45,7 +45,7 @@ def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[Kin
 
 
 def _found_again(arm: Manipulator, before: KinBody, body: KinBody) -> Manipulator:
-    """Return a manipulator of ``before`` for ``body``, which has other DOFs; gripper joints without DOF are removed."""
+    """Transfer a manipulator from ``before`` to ``body``, which has other DOFs; remove gripper joints without DOF."""
     signs = dict(zip(arm.gripper_dofs, arm.chucking_direction, strict=True))
     dofs = {joint.name: sign for dof, sign in signs.items() for joint in [before.joint_of_dof(dof)]}
     kept = [name for name in dofs if any(joint.name == name for joint in body.joints)]

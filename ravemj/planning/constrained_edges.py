@@ -27,7 +27,7 @@ _DETOUR = 0.8
 """Maximum length of each half of a projected edge, relative to the edge; a longer half is a jump on the constraint."""
 
 _SHORTEST = 1e-3
-"""Minimum length of a part of an edge that is halved, relative to the edge."""
+"""Length of a part of an edge, relative to the edge, below which the part is not halved and the edge is rejected."""
 
 
 class Manifold(NamedTuple):

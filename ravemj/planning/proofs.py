@@ -203,7 +203,7 @@ def distances(spaces: Spaces, configurations: Sequence[Floats], pairs: Ints) -> 
 
 
 def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_start: bool) -> list[float]:
-    """Return the time [s] at which each pair's distance first reaches ``APART``, searched from start or end."""
+    """Return when each pair's distance first reaches ``APART`` [s], from the start on or from the end backwards."""
     begin, finish = curves[0].start, curves[-1].end
     times = np.linspace(begin, finish, _SEARCH + 1) if is_start else np.linspace(finish, begin, _SEARCH + 1)
     times_apart, left = np.full(len(pairs), times[-1]), np.ones(len(pairs), dtype=bool)
@@ -285,7 +285,7 @@ def _note_nearest(proof: Proof, spaces: Spaces, intervals: Intervals, cases: Cas
 
 
 def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof) -> None:
-    """Set ``proof.smallest_gap`` near the smallest measured distance, by subdividing the critical intervals."""
+    """Set ``proof.smallest_gap`` to a close lower bound of the smallest distance, by subdividing critical intervals."""
     proved, rest = _smallest(every)
     for _ in range(_REFINEMENTS):
         wanted = proof.nearest[0] - max(_TOLERANCE, _PART * proof.nearest[0])
@@ -300,7 +300,7 @@ def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof)
 
 
 def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
-    """Return the intervals with the smallest bounds, as many as can be refined, and the least bound of the others."""
+    """Return the intervals that refinement may subdivide, those with the least bounds, and the next larger bound."""
     most, proved = _REFINEMENTS * _REFINED, list[_Proved]()
     for (times, control), cases, _, bounds, _ in every:
         least = np.full(len(times), np.inf)
@@ -313,7 +313,7 @@ def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
 
 
 def _raised(spaces: Spaces, near: Sequence[_Proved], wanted: float, proof: Proof) -> list[_Proved]:
-    """Return the parts of intervals, with new lower bounds for pairs whose bounds are below ``wanted`` [m]."""
+    """Subdivide intervals; return the parts, with new lower bounds for pairs whose bounds are below ``wanted`` [m]."""
     whole = Intervals(np.array([interval.times for interval in near]), np.array([each.control for each in near]))
     parts, origins = whole.parts(np.full(len(near), _CUTS))
     known = np.full((len(origins), spaces.pair_count), np.inf)

@@ -249,7 +249,7 @@ class _TreeGrowth:
         return None
 
     def grow(self, target: Floats, iteration: int) -> Search | None:
-        """Grow the smaller tree towards a configuration and the other to its new node; return a path if they meet."""
+        """Grow the smaller tree towards a configuration, and the other to the new node; return a path if they meet."""
         near, far = self.trees[self._grown], self.trees[1 - self._grown]
         whole = self._lines_blocked < _WHOLE_LINES
         longest = self._longest if whole else LINE

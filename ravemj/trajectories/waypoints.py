@@ -237,7 +237,8 @@ class Waypoints:
     def _curve(self, group: Group, interpolation: str, index: int, duration: float, find_body: FindBody) -> Floats:
         """Return the polynomial of a group in the segment before waypoint ``index``.
 
-        If derivatives are missing, it is the time derivative of the polynomial of the group's integral.
+        If derivatives needed by the interpolation are missing, differentiate the polynomial of the group's integral, as
+        of positions for velocities.
         """
         if group.kind == IK[0]:
             what = f"'{interpolation}' interpolation of goals of inverse kinematics"
@@ -258,7 +259,7 @@ class Waypoints:
         return differentiated(self._curve(integral, higher, index, duration, find_body), duration)
 
     def _derivatives(self, group: Group, interpolation: str) -> list[Group]:
-        """Return the groups with the successive derivatives of another group, up to the first one that does not fit."""
+        """Return the groups with the successive derivatives of ``group``, while size and interpolation match."""
         derivatives: list[Group] = []
         while interpolation != INTERPOLATIONS[0]:
             derivative = find_shifted(self.groups, group.name, len(derivatives) + 1, exact=True)

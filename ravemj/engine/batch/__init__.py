@@ -37,7 +37,7 @@ class Batch:
         self._chain = LinkChain(kinematics, dynamics.tree)
 
     def _chunks(self, count: int, poses: int = POSES) -> Iterator[slice]:
-        """Yield slices of similar size that cover a number of configurations."""
+        """Yield slices of similar size that cover ``count`` configurations, each with about ``poses`` link poses."""
         parts = -(-count // max(100, min(1000, poses // len(self._kinematics.body_ids))))
         for part in range(parts):
             yield slice(part * count // parts, (part + 1) * count // parts)
@@ -197,7 +197,7 @@ def _combined(vectors: Floats, factors: Floats) -> Floats:
 
 
 def _fill_twice(fill: Callable[[Floats, Sequence[Floats]], None], out: Floats, *rows: Floats) -> None:
-    """Compute a single configuration as one of two equal ones, since BLAS rounds single columns differently.
+    """Compute a single configuration by passing it twice, since BLAS rounds single columns differently.
 
     Args:
         fill: Called with an array for the results, and with the configurations.

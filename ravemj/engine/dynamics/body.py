@@ -134,7 +134,7 @@ class BodyDynamics:
         return matrix
 
     def _coupling(self, *, second: bool = False) -> Coupling:
-        """Return the coupling of MuJoCo's velocities to the DOFs in the present configuration."""
+        """Return the coupling of MuJoCo's velocities to the DOFs at present; if ``second``, with its derivative."""
         return self.couplings.constant or self.couplings.at(self._kinematics.values(), second=second)
 
     def _of_dofs(self, rows: DerivativeRows) -> Floats:
@@ -342,7 +342,7 @@ class BodyDynamics:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
-        """Write the sum of DOF, velocity-dependent and additional root accelerations (6,) into ``qacc``."""
+        """Write the sum of DOF, velocity-dependent and root accelerations into ``qacc``; ``external`` is per root."""
         qacc = self._qacc
         if accelerations is None:
             qacc[...] = 0.0
@@ -405,7 +405,7 @@ class BodyDynamics:
         return self._of_dofs(self._forces), self._of_dofs(self._by_velocity), self._of_dofs(self._rest)
 
     def _write_parts_of_joints(self) -> None:
-        """Write the forces due to acceleration, velocity and gravity, if only joints without motors move.
+        """Write the forces due to acceleration, velocity and gravity, given constant coupling, no motors, fixed roots.
 
         Without accelerations and gravity, ``mj_rne`` returns only the effects of velocity.
         """
@@ -418,7 +418,7 @@ class BodyDynamics:
         rest -= by_velocity
 
     def _write_parts_of_all(self, velocities: Floats) -> None:
-        """Write the forces of the motion in MuJoCo's data, split into acceleration, joint velocity and rest.
+        """Write the forces of the motion in MuJoCo's data, split into acceleration, joint velocity and all else.
 
         The part of joint velocities is computed with the base at rest and without gravity.
         """

@@ -132,7 +132,7 @@ class _Partials:
         gradients: dict[int, Gradient],
         hessians: dict[int, Hessian] | None,
     ) -> tuple[Gradient, Hessian]:
-        """Return the first and second derivatives of a mimic joint by the DOFs, by the chain rule over its leaders."""
+        """Return gradient and Hessian of a mimic joint with respect to the DOFs, by the chain rule over its leaders."""
         gradient: Gradient = {}
         hessian: Hessian = {}
         moving = [name for name in self.names if _index(name) in gradients]
@@ -208,7 +208,7 @@ def rotation_rate(vector: Floats) -> tuple[Floats, list[Floats]]:
 
 
 def _series(square: Floats, first: int) -> tuple[Floats, Floats]:
-    """Return the sum of (-1)^k s^k / (2k + first)! over k, as in sin and cos of √s, and its derivative by s."""
+    """Return f(s), the sum of (-1)^k s^k / (2k + first)! over k, as in sin and cos of √s, and df/ds."""
     terms = [(-1) ** k / math.factorial(2 * k + first) for k in range(6)]
     small = np.polynomial.polynomial.polyval(square, terms)
     small_slope = np.polynomial.polynomial.polyval(square, [k * term for k, term in enumerate(terms)][1:])

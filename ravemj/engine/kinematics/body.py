@@ -198,7 +198,7 @@ class BodyKinematics:
         self._are_multiples = len(self._multiples) == len(self.mimic.joints)
 
     def _touch(self) -> None:
-        """Update both stamps after a change of more than joint values."""
+        """Update ``stamp`` and ``pose_stamp`` after a change of more than joint values."""
         self.stamp += 1
         self.pose_stamp = self.stamp
 

@@ -99,7 +99,7 @@ def _settled(shown: Floats, last: Floats) -> Floats:
 def _products() -> Floats:
     """Return the matrix, (9, 16), from rotation matrix entries to four times the products of quaternion components.
 
-    The products are those of all pairs of w, x, y, z; squares are reduced by 1.
+    The products are those of all pairs of w, x, y, z; squares are reduced by 1, as in 4 w² - 1.
     """
     xx, xy, xz, yx, yy, yz, zx, zy, zz = np.eye(9)
     return (

@@ -79,7 +79,7 @@ def _followers(model: mujoco.MjModel) -> Iterator[_Follower]:
 
 
 def _of_tendons(model: mujoco.MjModel, first: int, second: int, polynomial: list[float]) -> Iterator[_Follower]:
-    """Yield the equation of the first joint of a fixed tendon, if it is linear in the other joints."""
+    """Yield the equation of the first joint of fixed tendon ``first``, coupled to ``second`` (-1: none), if linear."""
     own = _joints_of(model, first)
     other = {} if second < 0 else _joints_of(model, second)
     if own is None or other is None or not own or (other and any(polynomial[2:])):
@@ -133,7 +133,7 @@ def _product(value: float, factor: str, power: int) -> str:
 
 
 def _image(model: mujoco.MjModel, tree: BodyTree, follower: _Follower, constant: float) -> tuple[float, float]:
-    """Return the smallest and largest value of a mimic joint within the limits of its leaders."""
+    """Return the range of a mimic joint within its leaders' limits; ``constant`` is the constant of its equation."""
     low = high = constant
     for leader, coefficients in zip(follower.leaders, follower.coefficients, strict=True):
         axis = tree.joints[leader].axes[0]

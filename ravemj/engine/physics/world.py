@@ -193,7 +193,7 @@ class Physics:
         return touches
 
     def _body_id(self, state: BodyState, link: int) -> int | None:
-        """Return MuJoCo's index of a link, None before the first step; compute the forces on all links first."""
+        """Compute the forces on all links, and return MuJoCo's index of one link; None before the first step."""
         body = self._bodies.get(state)
         if body is None:
             return None

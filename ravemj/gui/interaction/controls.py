@@ -197,7 +197,7 @@ class Controls:
         return next((body for body in bodies if body.scene.dof_axes), None)
 
     def _redundant_reach(self) -> "Reach | None":
-        """Return the drag of a redundant arm if its link is selected and no menu covers its slider, else None."""
+        """Return the drag of a redundant arm if the dragged link is selected and no menu covers the slider, or None."""
         reach, selection = self.reach, self._selector.selection
         if reach is None or reach.free_dof is None or selection is None or self.unfolded not in {"", "joints"}:
             return None

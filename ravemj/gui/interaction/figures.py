@@ -172,7 +172,7 @@ def _points(points: Floats, radius: float) -> list[Primitives]:
 
 
 def _forces(points: Floats, forces: Floats, weight: float, radius: float) -> list[Primitives]:
-    """Return the contacts of the physics engine, each with an arrow proportional to its force."""
+    """Return spheres at contacts, and arrows of forces, scaled by ``weight`` or, if it is 0, by the largest force."""
     sizes = np.linalg.norm(forces, axis=1)
     unit = weight or float(sizes.max(initial=0.0))
     arrows: list[Primitives] = []
@@ -222,7 +222,7 @@ def floor_labels(center: Floats, radius: float) -> tuple[Label, ...]:
 
 
 def _step_and_reach(center: Floats, radius: float) -> tuple[float, float]:
-    """Return the distance between lines and half the side of the floor grid, a whole number of steps [m]."""
+    """Return the line spacing of the floor grid and half its side, a whole multiple of the spacing [m]."""
     wanted = _FLOOR_REACH * radius + float(np.abs(center[:2]).max())
     step = next((step for step in _STEPS if wanted / step <= _MOST_LINES), _STEPS[-1])
     return step, step * min(max(math.ceil(wanted / step), 1), _MOST_LINES)

@@ -19,7 +19,7 @@ from ravemj.model.manipulators import chain
 from ravemj.model.scene import KinBody, Manipulator
 
 _TURNING = 0.03
-"""Weight of the orientation error [1/rad] relative to a position error of the arm's length: position has priority."""
+"""Weight of an orientation error of 1 rad relative to a position error of the arm's length: position has priority."""
 
 _WEIGHTS = np.array([1.0, 1.0, 1.0, _TURNING, _TURNING, _TURNING])
 _SWEEP = 0.08

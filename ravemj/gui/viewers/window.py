@@ -28,14 +28,14 @@ _LOG = logging.getLogger("ravemj")
 _WIDTH, _HEIGHT = 960, 720
 _PERIOD = 1 / 60
 _SLOW = 1.5 * _PERIOD
-"""Drawing time [s] above which the processor, not the screen, limits the frame rate, so that the script gets time."""
+"""Drawing time [s] from which the thread waits a full period before the next frame, so that scripts get time."""
 
 _LONGEST_SYNC = 1.0
 _FARTHEST = 32767
 """Largest coordinate on an X screen."""
 
 _running: dict[threading.Thread, tuple[Flag, Flag]] = {}
-"""Two flags for each window thread: request to close, and end of the thread (Ctrl-C can break ``join``)."""
+"""Flags of each window thread: request to close, and has ended (instead of ``join``, which Ctrl-C can break)."""
 
 
 class WindowViewer(Viewer):

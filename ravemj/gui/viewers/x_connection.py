@@ -13,7 +13,7 @@ _NORTH_WEST = 1
 
 
 class _WindowAttributes(ctypes.Structure):
-    """The first fields of Xlib's ``XSetWindowAttributes``; the mask of changes excludes the others."""
+    """First fields of Xlib's ``XSetWindowAttributes``; Xlib ignores the others, whose bits in the mask are not set."""
 
     _fields_ = (
         ("background_pixmap", ctypes.c_ulong),

@@ -172,7 +172,10 @@ class NoFamilyError(Exception):
 
 
 def _plane_side(joint: Screw, middle: Screw, foot: Floats, plane: Plane, sign: float) -> Side:
-    """Return the invariants of a plane moved by ``joint``: tilt against the middle axis, and distance from ``foot``."""
+    """Return the invariants of a plane moved by ``joint``: tilt against the middle axis, and distance from ``foot``.
+
+    If ``sign`` is -1, the joint moves backwards.
+    """
     direction = Screw(joint.axis, np.zeros((3, 1, 1)))
     side = Measure(middle.axis, joint.point - foot, sphere=False).side(direction, plane.normal, sign)
     offset = dot(plane.normal, plane.point - joint.point)

@@ -151,7 +151,7 @@ def _eigen(matrix: Floats) -> list[Floats]:
 
 
 def _ratio(low: NDArray[np.complex128], high: NDArray[np.complex128]) -> Floats:
-    """Return a tangent, shape (16, N), as the quotient of the largest two monomials that differ by one power of it."""
+    """Return a tangent, (16, N), as the ratio of the two largest monomials that differ by one power of this tangent."""
     low, high = (part.reshape(len(part), -1, part.shape[-1]) for part in (low, high))
     best = np.argmax(np.abs(low) + np.abs(high), axis=1)[:, None]
     below, above = np.take_along_axis(low, best, axis=1)[:, 0], np.take_along_axis(high, best, axis=1)[:, 0]

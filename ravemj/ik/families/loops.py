@@ -138,7 +138,10 @@ Step = Callable[[Screw, Floats, Floats], Floats]
 
 
 class _Around:
-    """Joints F1, F2, F3 around a block, with their values; for the block's motion B, B⁻¹ = goal⁻¹ F1 F2 F3 rest."""
+    """Joints F1, F2, F3 around a block, their values, and the constants ``goal`` and ``rest`` of the loop.
+
+    The block's motion B satisfies B⁻¹ = goal⁻¹ F1 F2 F3 rest.
+    """
 
     def __init__(
         self, screws: Sequence[Screw], values: Sequence[Floats], goal: Transform | None, rest: Transform | None
@@ -162,7 +165,10 @@ class _Around:
         turn: Step,
         move: Step,
     ) -> RigidMotion:
-        """Return the composition of ``first``, the motions of ``pairs``, and the inverse of ``last``."""
+        """Return the motion that applies ``first``, then each joint of ``pairs``, then the inverse of ``last``.
+
+        A joint moves vectors by the method ``turn``, points by ``move``.
+        """
         back = None if last is None else last.inverse()
 
         def turned(vectors: Floats) -> Floats:

@@ -100,7 +100,10 @@ class OnePose:
         return turns_found
 
     def _numbers(self, line: tuple[Vector, Vector], point: Vector, sign: float) -> tuple[Turn, tuple[Turn, Turn]]:
-        """Return the two invariants of a point that a joint moves; they do not change if the middle joint moves."""
+        """Return the middle joint's invariants, constants and factors, of a point moved by the first or third joint.
+
+        If ``sign`` is -1, the joint moves backwards.
+        """
         axis, at = line
         one, centre = self._measure
         arm = _minus(point, at)

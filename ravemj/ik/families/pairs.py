@@ -152,7 +152,10 @@ class Pair:
     def _one_by_one(
         self, factors: tuple[Floats, Floats], rest: Floats, side: int, equation: int
     ) -> tuple[Floats, Floats]:
-        """Solve the equation with one unknown, substitute its solutions into the other equation, and solve that."""
+        """Solve ``equation`` for the joint ``side``, its only unknown, then the other equation for the other joint.
+
+        ``rest`` are the right-hand sides.
+        """
         first = self._single(side, equation, factors[side][equation], rest[equation])
         known = factors[side][1 - equation]
         left = rest[1 - equation] - (known[0] * first[0] + known[1] * (first[1] if len(first) > 1 else first[0] ** 2))

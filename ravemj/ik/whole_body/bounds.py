@@ -66,6 +66,9 @@ class MotionLimits:
 
 
 def _within(lowest: Floats, highest: Floats, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
-    """Return [lower, upper] clipped to [lowest, highest]; if they do not overlap, both bounds are the nearest end."""
+    """Return [lower, upper] clipped to [lowest, highest].
+
+    If they do not overlap, both bounds are the end of [lowest, highest] that is nearest to [lower, upper].
+    """
     least = np.minimum(np.maximum(lower, lowest), highest)
     return least, np.maximum(np.minimum(np.maximum(upper, lowest), highest), least)  # beyond a limit, lower > upper

@@ -32,7 +32,7 @@ _NEWTON = 1e-5
 _TURNS = 3
 """Maximum number of multiplier updates, and of Newton steps on contacts."""
 _EXACTLY = 1e-6
-"""Fraction of a contact error up to which the error after a displacement counts as removed."""
+"""Maximum remaining fraction of a contact error that counts as removed."""
 _DRIFT = 0.05
 """Contact error above which contacts are approached as tasks instead of enforced [m or rad]."""
 _LEAST_DAMPING, _MOST_DAMPING = 1e-6, 1e3
@@ -41,7 +41,7 @@ _BOUNCE = 1e-7
 _WINDOW, _LITTLE = 40, 1e-6
 """Convergence test: the number of steps, and the relative decrease of the cost over them."""
 _MINOR = 1e-3
-"""Relative decrease of the cost over ``_WINDOW`` steps below which a descent at its last step counts as converged."""
+"""Relative decrease of the cost over ``_WINDOW`` steps below which a descent counts as converged if steps run out."""
 _STILL = 1e-10
 """Displacement that counts as zero."""
 
@@ -163,7 +163,7 @@ class Descent:
         return DescentResult(steps, _cost(self._measured()), stopped)
 
     def _settle(self, state: _State, longest: float) -> None:
-        """Correct the drift of all priorities but the lowest, whose effect is removed by strong damping."""
+        """Correct the drift of all priorities but the lowest; strong damping suppresses motions for the lowest one."""
         for _ in range(_TURNS):
             saved = self._mechanism.saved()
             moved = self._advance(state, _MOST_DAMPING, self.limits.reachable(self._mechanism.values(), longest))

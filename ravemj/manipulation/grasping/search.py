@@ -416,7 +416,7 @@ class _CandidateSearch:
         )
 
     def _stuck(self, values: Floats, candidate: _Candidate, tests: HandTests) -> str:
-        """Return a reason for rejection if an unmoved finger touches the object; else an empty string."""
+        """Return a reason for rejection if a finger that did not close touches the object; else an empty string."""
         for finger in self._hand.fingers:
             is_open = finger.side and values[finger.dof] == self._hand.values[finger.dof]
             if is_open and tests(finger.links, candidate.T_world_base, values, "target"):

@@ -20,7 +20,10 @@ Compiled = Callable[[Sequence[float]], float]
 MOST_NESTED = 40
 
 _MOST_NODES = 20_000
-"""Maximum number of nodes of an equation over all its values: more than robots need, a limit for malicious files."""
+"""Maximum number of nodes times values of a multivalued equation; above it, only the first value is considered.
+
+Robots need less; it is a limit for malicious files.
+"""
 
 
 def parse(text: str, variables: Collection[str]) -> "Expression":

@@ -203,7 +203,7 @@ def _duration(needed: float, given: float | None, time_step: float) -> float:
 
 
 def _driven(profile: Profile, segment: Segment, limits: PathLimits, duration: float, attempts: int) -> SegmentRows:
-    """Return the rows of a segment. If it is from rest to rest, up to ``attempts`` longer durations are tried."""
+    """Return the rows of a segment; from rest to rest, try up to ``attempts`` durations until limits are kept."""
     if duration < _SHORTEST and profile.merges:
         return SegmentRows(np.zeros(1), ())
     for _ in range(attempts if segment.is_from_rest_to_rest else 1):

@@ -18,7 +18,7 @@ from ravemj.planning.retiming.segments import PathLimits, RetimingError, Timed
 
 _LEAST_ROWS = 400
 _ROWS_OF_SEGMENT = 20
-"""Grid points per segment. TOPP-RA keeps limits at grid points; a finer grid exceeds them less in between."""
+"""Minimum number of grid points per segment; between grid points, TOPP-RA may exceed limits, less on a finer grid."""
 
 
 def is_installed() -> bool:

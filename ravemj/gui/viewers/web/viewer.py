@@ -196,7 +196,7 @@ class WebViewer(Viewer):
         return client.patience
 
     def _add_chunks(self, client: Client, uploads: PageUploads) -> None:
-        """Add the received chunks to uploads, and complete uploads to the environment."""
+        """Add the received chunks to uploads, and load completed uploads into the environment."""
         notices = client.interaction.controls.notices
         while client.chunks:
             trouble = uploads.add(client.chunks.popleft())
