@@ -61,7 +61,7 @@ class _Exit(Generic[_T]):
         return self if owner is None else self._find(owner)
 
     def __call__(self, owner: _T, *error: object) -> None:
-        """Leave the block of an object, as ``contextlib.ExitStack`` does."""
+        """Leave the ``with`` block of an object, as ``contextlib.ExitStack`` does."""
         self._find(owner)(*error)
 
 

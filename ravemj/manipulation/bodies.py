@@ -286,7 +286,7 @@ def _restore(saved: Sequence[tuple[BodyState, SavedConfiguration]], stamps: Sequ
 
 
 def _is_unbound(group: Group) -> bool:
-    """Return whether a group's values are an IK goal or a pose without a body, which move nothing."""
+    """Return whether the values of a configuration group move no body: an IK goal, or a pose without a body."""
     return group.kind == IK[0] or (group.kind == AFFINE[0] and group.body == _NO_BODY)
 
 

@@ -208,9 +208,9 @@ class Processor:
             raise RetimingError(str(error)) from None
 
     def _certified(self, motion: ShortenedMotion, edges: Edges, tries: int) -> Certificate | None:
-        """Certify a motion, after removing shortcuts and lines that cannot be certified; return None if that fails.
+        """Certify a motion, without the shortcuts and lines that cannot be certified; return None if that fails.
 
-        Replacing a line removes the shortcuts that start or end on it, so new ones are attempted.
+        A line is replaced by a detour. Shortcuts that start or end on it are removed, too, and new ones are attempted.
         """
         certifier = edges.certifier()
         if certifier is None or not motion.segments:

@@ -127,7 +127,8 @@ def _eigen(matrix: Floats) -> list[Floats]:
     """Return the half-angle tangents of joints 3, 4 and 5, each (16, N), by an eigenvalue problem.
 
     ``matrix`` has shape (N, 3, 6, 9): for powers 0, 1, 2 of the first tangent, six equations in the monomials x^i y^j
-    of the others, i and j up to 2. At the roots it is singular, with the monomials in its null space.
+    of the others, i and j up to 2. At a root of the first tangent, the sum over its powers is singular, and the
+    monomials are in its null space.
     """
     count = len(matrix)
     whole = np.zeros((count, 3, 12, 12))
