@@ -76,7 +76,7 @@ def _jittered_on(
     jitter: float,
     random: np.random.Generator,
 ) -> Floats | None:
-    """Return an allowed configuration near a given one; None if the given one violates the constraint or none is found."""
+    """Return an allowed configuration near a given one; None if that one violates the constraint or none is found."""
     if not manifold.has(configuration):
         return None
 
