@@ -14,9 +14,9 @@ from ravemj.ik.tasks import goal_poses
 from ravemj.ik.vectors import Floats
 
 _FINEST = 0.02
-"""Finest spacing of the values tried inside an interval of a free joint, as a fraction of its sampling step."""
+"""Minimum spacing of the values tried in an interval of solutions, as a fraction of the free joint's sampling step."""
 _MOST = 240
-"""Maximum number of values of a free joint tried inside the intervals between its samples."""
+"""Maximum number of values tried in the free joint's intervals of solutions, in addition to its samples."""
 
 
 def nearest_first(

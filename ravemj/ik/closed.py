@@ -28,9 +28,9 @@ _SAME = 1e-5
 _STEPS = 12
 """Maximum number of Newton steps."""
 _MOST_GROWTH = 2.0
-"""Ratio of the error to the initial one above which Newton's method stops, for accurate closed forms.
+"""Ratio of the error to the initial one above which Newton's method stops, if the closed form is accurate.
 
-The error grows by more if the pose is just out of reach, where the family returns an inexact double solution.
+A larger growth means that the pose is just out of reach, where the closed form returns an inexact double solution.
 """
 _SETTLED, _SLOWEST = 3, 0.5
 """Number of Newton steps before convergence is checked, and the maximum error ratio of a later step.
@@ -152,7 +152,13 @@ class ClosedForm:
     def _check(
         self, poses: Floats, turns: Turns, values: Floats, valid: Bools, merged: Bools, *, limits: bool
     ) -> Floats:
-        """Write the family's joint values, ``valid`` and ``merged`` into the given arrays; return the pose errors."""
+        """Check the solutions ``turns`` of the closed form.
+
+        The joint values, ``valid`` and ``merged`` are written into the given arrays.
+
+        Returns:
+            The pose errors.
+        """
         if isinstance(turns, np.ndarray):
             np.arctan2(turns[:, 1], turns[:, 0], out=values)
         else:
@@ -205,7 +211,10 @@ class ClosedForm:
         return turns[:, self._order].transpose(1, 2, 0)[..., None]
 
     def _motion(self, poses: Floats, locked: dict[int, Floats]) -> Transform:
-        """Return the required joint motion, or tool position for tasks of position; the unit of length is the reach."""
+        """Return the motion that the joints must make or, if only the position is constrained, the tool's position.
+
+        The unit of length is the reach.
+        """
         whole = self.task in (Task.TRANSFORM, Task.PLANAR)
         motion = poses @ self._tool if whole else poses
         rotation = np.ascontiguousarray(motion[:, :3, :3].transpose(1, 2, 0))[:, :, None]
@@ -287,7 +296,9 @@ def _filled(values: Floats, shape: tuple[int, ...]) -> Floats:
 
 
 def _merge(parts: Floats, valid: Bools, merged: Bools) -> None:
-    """Mark all but one of equal solutions, as of coinciding axes or branches, as invalid, and their poses as merged.
+    """Keep one of several equal solutions of a pose; mark the others as invalid, and the pose as merged.
+
+    Solutions are equal if, for instance, axes coincide or two branches meet.
 
     ``parts`` are cosines, sines and distances of all joints, shape (K, B, N); ``valid`` (B, N) and ``merged`` (N,) are
     changed. Equal rows have equal sums with fixed weights, so only neighbours in the order of these sums are compared.

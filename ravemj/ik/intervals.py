@@ -22,7 +22,10 @@ if TYPE_CHECKING:
     from ravemj.ik.solver import ArmSolutions
 
 _STEEP = 1.0
-"""Multiple of the rise to the higher neighbouring sample up to which a minimum of the excess is searched."""
+"""Maximum excess of a minimum that is searched, as a multiple of the rise to the higher neighbouring sample.
+
+The function ``excess`` defines the excess.
+"""
 _CLOSE, _VERY_CLOSE = 0.5, 0.05
 """Maximum excess from which a descent is started: from minima of the excess, and from other samples."""
 _ENOUGH = 32
@@ -32,7 +35,7 @@ _MOST_VALLEYS, _FIRST_VALLEYS = 6, 2
 _MOST_DESCENTS, _LAST_DESCENTS = 12, 4
 """Maximum number of descents from minima of the excess, and then, if they fail, from the samples with the least one."""
 _FRACTIONS = np.linspace(0, 1, 12)
-"""Fractions of the interval around a minimum of the excess, between the neighbouring samples, that are tried."""
+"""Values of the free joint tried around a minimum of ``excess``, as fractions of the way between the neighbours."""
 _PARTS, _SECTIONS = 8, 5
 """Subdivisions per section, and number of sections: an end of an interval is found to 1 / 9⁵ of a step."""
 
@@ -108,7 +111,10 @@ def between_samples(solver: "ArmSolutions", pose: Floats, free: Floats, solution
 
 
 def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tuple[int, Ints]]) -> Iterator[Found]:
-    """Yield solutions near minima of the excess; a valley is a sample and the branches with a minimum there."""
+    """Yield solutions near minima of ``excess``.
+
+    Each of the ``valleys`` is the index of a sample and the branches with a minimum there.
+    """
     count = len(_FRACTIONS)
     parts, rest = list[Solutions](), list[Ints]()
     for first, some in ((0, valleys[:_FIRST_VALLEYS]), (_FIRST_VALLEYS, valleys[_FIRST_VALLEYS:])):
@@ -136,7 +142,7 @@ def _near(solver: "ArmSolutions", pose: Floats, values: Floats, valleys: list[tu
 def _descents(
     solver: "ArmSolutions", pose: Floats, solutions: Solutions, missed: Floats, places: Ints, most: int = _MOST_DESCENTS
 ) -> Iterator[Found]:
-    """Yield solutions from descents, started at those ``most`` samples and branches ``places`` with least excess."""
+    """Yield solutions by descents from ``most`` samples and branches of ``places``, those with the least excess."""
     for sample, branch in _distinct(missed, places, most).tolist():
         reached = solver.numeric.descend(pose, clamped(solver.chain, solutions.values[sample, branch]))
         if reached.error < ACCURATE:
@@ -144,7 +150,10 @@ def _descents(
 
 
 def _distinct(missed: Floats, places: Ints, most: int) -> Ints:
-    """Return the samples and branches with the least excess, shape (K, 2); equal excesses of a sample count once."""
+    """Return the ``most`` samples and branches of ``places`` with the least excess ``missed``, shape (K, 2).
+
+    Of several branches with equal excess at one sample, only one is returned.
+    """
     sizes = missed[places[:, 0], places[:, 1]]
     kept: dict[tuple[int, float], int] = {}
     for index in np.argsort(sizes, kind="stable").tolist():
@@ -155,7 +164,10 @@ def _distinct(missed: Floats, places: Ints, most: int) -> Ints:
 
 
 def _valleys(missed: Floats) -> tuple[Ints, Ints]:
-    """Return the samples and branches at which the excess (K, B) has a minimum that may reach 0 between two samples."""
+    """Return the samples and branches at which the excess ``missed`` (K, B) has a minimum.
+
+    Minima too high to reach 0 before the neighbouring samples are omitted.
+    """
     around = np.pad(missed, ((1, 1), (0, 0)), constant_values=np.inf)
     before, after = around[:-2], around[2:]
     lowest = (missed <= before) & (missed <= after) & (missed > 0) & (missed < _CLOSE)
@@ -186,7 +198,10 @@ def intervals(solver: "ArmSolutions", pose: Floats, free: Floats, *, limits: boo
 def _ends(
     solver: "ArmSolutions", pose: Floats, branch: Ints, inside: Floats, outside: Floats, *, limits: bool
 ) -> Floats:
-    """Return ends of intervals of the free joint, shape (C,), by subdivision between ``inside`` and ``outside``."""
+    """Return the ends of intervals of the free joint, shape (C,), by repeated subdivision.
+
+    For each end, ``inside`` is a value in the interval, and ``outside`` one beyond the end.
+    """
     steps = np.arange(_PARTS + 2) / (_PARTS + 1)
     rows = np.arange(len(branch))
     for _ in range(_SECTIONS if len(branch) else 0):

@@ -287,7 +287,11 @@ class ArmSolutions:
     def _best(
         self, solutions: Solutions, index: int, seed: Floats, weights: Floats | None, more: Floats | None = None
     ) -> Floats | None:
-        """Return the solution of pose ``index`` or in ``more`` within the limits and nearest to ``seed``, or None."""
+        """Return the solution of pose ``index``, or row of ``more``, that is within the limits and nearest to ``seed``.
+
+        Returns:
+            None if no solution is within the limits.
+        """
         rows = solutions.of(index)
         rows = self.spread(rows, seed) if solutions.merged[index] else rows
         rows = rows if more is None else np.vstack([rows, more])

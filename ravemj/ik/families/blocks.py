@@ -132,7 +132,7 @@ class Planar:
         return [three, two, one] if self.backward else [one, two, three]
 
     def _solve_between(self, motion: RigidMotion) -> list[Floats]:
-        """Solve a block with a revolute joint between two prismatic ones: the angle follows from the rotation."""
+        """Solve three planar joints, a revolute one between two prismatic ones: its angle follows from the rotation."""
         first, middle, last = self._order
         turn = turn_between(middle, self._side, motion.turned(self._side))
         way = motion.moved(middle.point) - middle.point

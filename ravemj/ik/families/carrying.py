@@ -211,10 +211,10 @@ def _nearest(first: Screw, other: Screw) -> Floats:
 
 
 def _crossing(screws: Screws) -> tuple[int | None, str]:
-    """Find a direction along which neither the prismatic middle joint nor the first or third joint moves points.
+    """Find a direction in which motions by the prismatic middle and by the first or third joint have no component.
 
     Returns:
-        The index of the first or third joint, 0 or 2, and ``along`` (the direction of its axis) or ``across``
+        The index of that first or third joint, 0 or 2, and ``along`` (the direction of its axis) or ``across``
         (perpendicular to both axes); None and an empty string if there is no such direction.
     """
     middle = screws[1]

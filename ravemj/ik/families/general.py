@@ -87,7 +87,7 @@ class General:
 
 
 def _left(screws: Sequence[Screw]) -> Floats:
-    """Return the left sides of the 14 loop equations, (N, 14, 27), as coefficients of three half-angle tangents."""
+    """Return the left sides of the 14 loop equations as polynomials in three half-angle tangents, shape (N, 14, 27)."""
     turns = [turn_of((_GRID + origin).reshape(3, 1)) for origin in _ORIGINS]
     places = np.indices((3, 3, 3)).reshape(3, 27)
     values = _carried(screws, [turn[:, place] for turn, place in zip(turns, places, strict=True)])
@@ -127,8 +127,8 @@ def _eigen(matrix: Floats) -> list[Floats]:
     """Return the half-angle tangents of joints 3, 4 and 5, each (16, N), by an eigenvalue problem.
 
     ``matrix`` has shape (N, 3, 6, 9): for powers 0, 1, 2 of the first tangent, six equations in the monomials x^i y^j
-    of the others, i and j up to 2. At a root of the first tangent, the sum over its powers is singular, and the
-    monomials are in its null space.
+    of the others, i and j up to 2. With the same equations times x, they form a square matrix polynomial in the first
+    tangent; at a solution it is singular, and the monomials are in its null space.
     """
     count = len(matrix)
     whole = np.zeros((count, 3, 12, 12))
@@ -152,7 +152,10 @@ def _eigen(matrix: Floats) -> list[Floats]:
 
 
 def _ratio(low: NDArray[np.complex128], high: NDArray[np.complex128]) -> Floats:
-    """Return a tangent, (16, N), as the ratio of the two largest monomials that differ by one power of this tangent."""
+    """Return a tangent, (16, N), as ``high / low``, monomials that differ by one power of it.
+
+    The largest of these pairs is used, which is the most accurate.
+    """
     low, high = (part.reshape(len(part), -1, part.shape[-1]) for part in (low, high))
     best = np.argmax(np.abs(low) + np.abs(high), axis=1)[:, None]
     below, above = np.take_along_axis(low, best, axis=1)[:, 0], np.take_along_axis(high, best, axis=1)[:, 0]

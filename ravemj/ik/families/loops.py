@@ -138,7 +138,7 @@ Step = Callable[[Screw, Floats, Floats], Floats]
 
 
 class _Around:
-    """Joints F1, F2, F3 around a block, their values, and the constants ``goal`` and ``rest`` of the loop.
+    """The joints F1, F2, F3 outside of a block, their values, and the constants ``goal`` and ``rest`` of the loop.
 
     The block's motion B satisfies B⁻¹ = goal⁻¹ F1 F2 F3 rest.
     """

@@ -100,9 +100,10 @@ class OnePose:
         return turns_found
 
     def _numbers(self, line: tuple[Vector, Vector], point: Vector, sign: float) -> tuple[Turn, tuple[Turn, Turn]]:
-        """Return the middle joint's invariants, constants and factors, of a point moved by the first or third joint.
+        """Return constants and factors of the middle joint's invariants for a point moved by the first or third joint.
 
-        If ``sign`` is -1, the joint moves backwards.
+        Each invariant is constant + factors · (cos, sin) of the moving joint. If ``sign`` is -1, the joint moves
+        backwards.
         """
         axis, at = line
         one, centre = self._measure

@@ -152,7 +152,7 @@ class Pair:
     def _one_by_one(
         self, factors: tuple[Floats, Floats], rest: Floats, side: int, equation: int
     ) -> tuple[Floats, Floats]:
-        """Solve ``equation`` for the joint ``side``, its only unknown, then the other equation for the other joint.
+        """Solve ``equation``, in which only the joint ``side`` is unknown, then the other equation for the other joint.
 
         ``rest`` are the right-hand sides.
         """

@@ -130,7 +130,10 @@ def _examples(arm: Arm, start: Floats) -> tuple[Transform, Locked]:
 
 
 def _complete(arm: Arm, missing: int) -> Iterator[Arm]:
-    """Yield the arm with ``missing`` virtual joints: first all at the tool, then with some that complete a block."""
+    """Yield the arm with ``missing`` virtual joints: first all at the tool, then some that extend joints to a block.
+
+    A block is a wrist or three planar joints.
+    """
     if missing < 0:
         return
     if missing == 0:
@@ -144,7 +147,10 @@ def _complete(arm: Arm, missing: int) -> Iterator[Arm]:
 
 
 def _blocks_of(arm: Arm, added: int, more: int) -> Iterator[Arm]:
-    """Yield arms in which ``added`` virtual joints complete existing ones to a block; ``more`` follow at the tool."""
+    """Yield arms in which ``added`` virtual joints extend existing ones to a block: a wrist or three planar joints.
+
+    Further ``more`` virtual joints are at the tool.
+    """
     size = 3 - added
     for place in range(len(arm.screws) - size + 1):
         around = range(place, place + size)

@@ -41,7 +41,7 @@ _BOUNCE = 1e-7
 _WINDOW, _LITTLE = 40, 1e-6
 """Convergence test: the number of steps, and the relative decrease of the cost over them."""
 _MINOR = 1e-3
-"""Relative decrease of the cost over ``_WINDOW`` steps below which a descent counts as converged if steps run out."""
+"""Relative decrease of the cost over ``_WINDOW`` steps below which a descent that used all its steps has converged."""
 _STILL = 1e-10
 """Displacement that counts as zero."""
 
@@ -163,7 +163,10 @@ class Descent:
         return DescentResult(steps, _cost(self._measured()), stopped)
 
     def _settle(self, state: _State, longest: float) -> None:
-        """Correct the drift of all priorities but the lowest; strong damping suppresses motions for the lowest one."""
+        """Correct errors of all priorities but the lowest that linearized steps left behind.
+
+        Strong damping suppresses motions for the lowest priority.
+        """
         for _ in range(_TURNS):
             saved = self._mechanism.saved()
             moved = self._advance(state, _MOST_DAMPING, self.limits.reachable(self._mechanism.values(), longest))

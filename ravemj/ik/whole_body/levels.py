@@ -20,7 +20,7 @@ _RANK = 1e-9
 _SOLVED = 1
 """Exit flag of daqp for an optimal solution."""
 _CAUTION = 1e-2
-"""Damping of the recovery from violated inequalities, whose rows may vanish near the maximum distance."""
+"""Damping of the motion that corrects violated inequalities: where a distance is largest, its Jacobian vanishes."""
 _SETTINGS = {"primal_tol": 1e-11, "dual_tol": 1e-11, "iter_limit": 2000}
 
 
