@@ -124,7 +124,7 @@ class ConstrainedEdges(Edges):
         return np.array([points[part] for part in sorted(points)])
 
     def _is_straight(self, start: Floats, end: Floats) -> bool:
-        """Return whether a straight line is a single step of edge tests, and its middle keeps the constraint."""
+        """Return whether a line is so short that edge tests make a single step, and its middle keeps the constraint."""
         step = self.space.difference(end, start)
         most = max(_INSIDE * self._manifold.threshold, self._manifold.off(start), self._manifold.off(end))
         return self.space.steps(step) == 1 and self._manifold.off(start + step / 2) <= most

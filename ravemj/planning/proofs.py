@@ -217,7 +217,10 @@ def _times_apart(spaces: Spaces, curves: Sequence[Curve], pairs: Ints, *, is_sta
 
 
 def _asked(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span]) -> tuple[Intervals, Cases]:
-    """Return the segments of a motion, divided where exempt spans start or end, and the pairs to test in each."""
+    """Return the segments of a motion and the pairs to test in each.
+
+    Segments are divided at both ends of each ``exempt`` span, in which its pair is not tested.
+    """
     cuts = sorted({time for span in exempt for time in (span.start, span.end)})
     pieces: list[Curve] = []
     for curve in curves:

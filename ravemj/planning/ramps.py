@@ -78,7 +78,7 @@ def shortest_ramps(steps: Floats, start: Floats, end: Floats, speed: Floats, acc
 
 
 def _one_way(steps: Floats, start: Floats, end: Floats, speed: Floats, acceleration: Floats) -> Floats:
-    """Return durations of motions that accelerate to a positive peak and decelerate; infinite if impossible."""
+    """Return durations of motions that accelerate to a positive velocity, then decelerate; infinite if impossible."""
     with np.errstate(divide="ignore", invalid="ignore"):
         square = acceleration * steps + (start**2 + end**2) / 2
         peak = np.sqrt(np.maximum(square, 0.0))

@@ -82,7 +82,8 @@ _PATIENCE = 20
 _WHOLE_LINES = 50
 """Number of blocked edges after which trees keep the part of an edge before an obstacle, instead of discarding it.
 
-In open space, trees of long edges connect sooner, since a blocked edge takes few tests. Narrow passages need steps.
+In open space, discarding is faster: a blocked edge takes few tests, and long edges connect the trees sooner. In
+narrow passages, only parts of edges are free.
 """
 
 _WHOLE_LENGTH = 0.15
@@ -339,7 +340,8 @@ def _reach(edges: Edges, tree: SearchTree, target: Floats, *, whole: bool = Fals
 def _path(edges: Edges, nodes: Sequence[Floats]) -> Floats:
     """Return a path through tree nodes without repeated or collinear ones.
 
-    A collinear node is removed only if the longer edge is still allowed, since it is tested at other configurations.
+    A collinear node is removed only if the edge without it is allowed, since tests of that edge use other
+    configurations than tests of its two parts.
     """
     space, path = edges.space, np.array(nodes)
     lengths = np.linalg.norm(space.difference(path[1:], path[:-1]), axis=1)

@@ -165,14 +165,14 @@ def _pieces(ramps: Ramps, spread: Callable[[Floats], Floats], origin: Floats) ->
 
 
 class _Place(NamedTuple):
-    """Point of a motion: a time [s] in the line or shortcut with the number ``source``."""
+    """Point of a motion, at ``time`` [s] from the start of the line or shortcut with the number ``source``."""
 
     source: int
     time: float
 
 
 class _Shortcut(NamedTuple):
-    """Shortcut between two points of a motion; its segments have a common source number."""
+    """Shortcut between two points of a motion; its segments have the number of the shortcut as ``source``."""
 
     start: _Place
     end: _Place

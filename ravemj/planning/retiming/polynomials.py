@@ -165,7 +165,7 @@ class Linear:
 
 
 def _of_base(step: Floats, limits: PathLimits) -> tuple[Floats, Floats]:
-    """Return distances of a step and their maximum speeds; a base counts as one translation and one rotation angle."""
+    """Return the distance and the maximum speed of each joint value; of a base, of its translation and its rotation."""
     parts = limits.coordinates
     translation, rotation = list(parts.translation), list(parts.rotation)
     rest = [column for column in range(len(step)) if column not in parts.translation + parts.rotation]

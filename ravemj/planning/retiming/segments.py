@@ -203,7 +203,10 @@ def _duration(needed: float, given: float | None, time_step: float) -> float:
 
 
 def _driven(profile: Profile, segment: Segment, limits: PathLimits, duration: float, attempts: int) -> SegmentRows:
-    """Return the rows of a segment; from rest to rest, try up to ``attempts`` durations until limits are kept."""
+    """Return the timed rows of a segment.
+
+    If it starts and ends at rest, up to ``attempts`` ever longer durations are tried until the limits are kept.
+    """
     if duration < _SHORTEST and profile.merges:
         return SegmentRows(np.zeros(1), ())
     for _ in range(attempts if segment.is_from_rest_to_rest else 1):
