@@ -48,7 +48,7 @@ _RESOLUTION = 0.02
 _ROUND = np.pi  # samples of a circular joint are drawn from [-pi, pi], since the joint has no limits of its own
 
 _FULL_TURN = 2 * np.pi
-"""Sampling limits of rotation vectors [rad]: with OpenRAVE's 10000, hardly a sample is near the start."""
+"""Sampling limits of rotation vectors [rad]. OpenRAVE's limit of 10000 would put hardly any sample near the start."""
 
 
 @dataclass(frozen=True)

@@ -175,7 +175,10 @@ def _pairs(world: CollisionWorld, bodies: Bodies, body: BodyState) -> Ints:
 
 
 def _chains(world: CollisionWorld, body: BodyState, bases: dict[BodyState, int]) -> list[tuple[int, Chain]]:
-    """Return each geom of a body and its grabbed bodies, with the joints that move it, last those of a moving base."""
+    """Return each geom of a body and its grabbed bodies, with the chain of joints that move it.
+
+    The chain ends with the virtual joints of the base, if the base moves.
+    """
     model, ids = world.model.model, world.model.part(body).body_ids
     base = (bases[body], bases[body] + 1) if body in bases else ()
     chains = [Chain((*joints_above(model, int(link)), *base)) for link in ids]

@@ -152,7 +152,10 @@ def _lines(inward: Floats, friction: float) -> Iterator[Floats]:
 
 
 def _opposite(rows: Floats, lines: Floats, cast: Cast, width: float, *, near: bool) -> tuple[NDArray[np.bool_], Floats]:
-    """Return the mask of lines that leave the object within ``width``, and the nearest or farthest exit points."""
+    """Return the mask of lines that leave the object within ``width``, and their exit points.
+
+    These are the nearest ones if ``near`` is True, else the farthest ones.
+    """
     if near:
         return cast(np.hstack([rows[:, :3] + _INSIDE * lines, (width - _INSIDE) * lines]))
     hit, points = cast(np.hstack([rows[:, :3] + width * lines, -width * lines]))

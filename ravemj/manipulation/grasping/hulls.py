@@ -139,7 +139,10 @@ def missing_direction(points: Floats) -> Floats:
 
 
 def _sorted(points: Floats) -> tuple[Floats, Ints]:
-    """Return the points in lexicographic order, which decides between equally far points, and their former indices."""
+    """Return the points in lexicographic order, and their former indices.
+
+    The hull prefers the first of equally far points, so it does not depend on the given order.
+    """
     order = np.lexsort(points.T[::-1])
     return points[order], order
 
