@@ -59,7 +59,7 @@ class LinkChain:
             self.steps[self._step_of[link]].links.append(link)
 
     def _hang(self, index: int, joint: Joint) -> None:
-        """Add the steps of a joint to the chain, one per axis, and attach the joint's child link to the last one."""
+        """Add each axis of a joint to the chain as a ``Step``, and attach the joint's child link to the last one."""
         kinematics = self._kinematics
         places = kinematics.joint_qpos[index]  # none for a joint that never moves
         step, T_step_parent = self._step_of[joint.parent], self.T_step_links[joint.parent]
@@ -127,7 +127,10 @@ class LinkChain:
         return np.repeat(frame[:, :, None], count, axis=2)
 
     def _ways(self, values: Floats, chosen: Sequence[int]) -> Floats:
-        """Return displacements of the chosen steps from their reference values [rad or m], shape (len(chosen), N)."""
+        """Return displacements from the reference values [rad or m], shape (len(chosen), N), of the chosen joint axes.
+
+        ``chosen`` are their indices in ``steps``.
+        """
         ways = np.zeros((len(chosen), values.shape[1]))
         first_values = self._first_values(values)
         for index, step in enumerate(self.steps[number] for number in chosen):

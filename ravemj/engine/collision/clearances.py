@@ -68,7 +68,7 @@ class Tested(NamedTuple):
 
 
 class _Cases(NamedTuple):
-    """Cases, each a pair of geoms in one configuration (row), with the current bounds of ``Tested``."""
+    """Pairs of geoms to test, each in one configuration (``rows``), with the bounds known so far; see ``Tested``."""
 
     rows: Ints
     pairs: Ints
@@ -77,7 +77,7 @@ class _Cases(NamedTuple):
     measured: Floats
 
     def open_of(self, cases: Ints) -> Ints:
-        """Return the given cases whose geoms may still come too near."""
+        """Return those of ``cases``, given by index, whose gap may be too small for the travel of the geoms."""
         return cases[self.gaps[cases] <= self.needed[cases]]
 
 
@@ -261,7 +261,7 @@ class Clearances:
 
 
 def _middles(cases: Ints, pairs: Ints) -> Ints:
-    """Return the middle one of each pair's undecided cases."""
+    """Return for each pair of geoms one of its undecided ``cases``: the middle one."""
     order = np.argsort(pairs[cases], kind="stable")
     _, starts, counts = np.unique(pairs[cases][order], return_index=True, return_counts=True)
     return np.sort(cases[order[starts + counts // 2]])

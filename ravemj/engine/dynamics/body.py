@@ -255,7 +255,7 @@ class BodyDynamics:
         return self._data.xpos.take(ids, 0) - self._data.subtree_com.take(self._root_ids, 0)
 
     def _present_velocities(self, arms: Floats) -> Floats:
-        """Return the link velocities in MuJoCo's data, shape (links, 6); ``arms`` is the result of ``_arms``."""
+        """Return the link velocities in MuJoCo's data, shape (links, 6), given the lever arms from ``_arms``."""
         motions = self._data.cvel.take(self._kinematics.body_ids, 0)
         spins = motions[:, :3]
         return np.concatenate((motions[:, 3:] + cross_rows(spins, arms), spins), axis=1)
@@ -342,7 +342,10 @@ class BodyDynamics:
             self._rest_qacc[self._inner] = coupling.bias(self._rates)
 
     def _set_accelerations(self, accelerations: Floats | None, external: Mapping[int, Floats] | None = None) -> None:
-        """Write the sum of DOF, velocity-dependent and root accelerations into ``qacc``; ``external`` is per root."""
+        """Write the sum of DOF, velocity-dependent and root accelerations into ``qacc``.
+
+        ``external`` are the accelerations of root links, by link index.
+        """
         qacc = self._qacc
         if accelerations is None:
             qacc[...] = 0.0

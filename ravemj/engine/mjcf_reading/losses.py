@@ -69,7 +69,7 @@ def _notes(compiled: CompiledModel, tools: int, mocap: set[int]) -> list[tuple[i
 
 
 def _held_by_mocap(model: mujoco.MjModel) -> set[int]:
-    """Return the equality indices of welds to mocap bodies; such welds pull, but do not fix anything at rest."""
+    """Return the equality indices of welds to mocap bodies; such welds pull a body but do not fix it."""
     bodies = {index for index in range(model.nbody) if model.body_mocapid[index] >= 0}
     return {
         index

@@ -209,7 +209,7 @@ class _OwnBody:
         return _same_pose(expected, there) and _near(_floats(attributes["rgba"]), rgba, _COLOUR_NEAR)
 
     def _joint(self, number: int, joint: Joint) -> Joint:
-        """Return a joint with the user's edits applied; unchanged if it places no link of the kinematic tree."""
+        """Return a joint with the user's edits applied; unchanged if the kinematic tree attaches no link by it."""
         if not joint.places_child or self._placing.get(joint.child) != number:
             return joint
         T_parent_child, names = self._pose(joint.child), self._names.joints[number]

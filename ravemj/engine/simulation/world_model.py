@@ -85,7 +85,7 @@ class WorldModel(Compiled):
         mujoco.mj_kinematics(self.model, self.data)
 
     def _describe(self, part: ModelPart, before: Iterable[Link], links: Iterable[Link]) -> None:
-        """Update masses of links and colours of geometries; surfaces drawn instead of a shape keep their colours."""
+        """Update masses of links and colours of geometries, except of those with separate display surfaces."""
         from ravemj.formats.mjcf import rgba  # noqa: PLC0415 - slow to import
 
         for old, link, body_id, counts in zip(before, links, part.body_ids.tolist(), part.names.geoms, strict=True):
