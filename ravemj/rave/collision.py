@@ -273,7 +273,7 @@ class CollisionChecker(Interface):
             report.collisionInfos = [self._info(findings.nearest, collides=False)]
 
     def _counts(self, collision: Collision) -> bool:
-        """Return whether no registered callback ignores a collision."""
+        """Return False if a registered callback ignores the collision, else True."""
         report = self.report(Findings([collision], FAR, None, 0))
         return all(callback(report, False) != CollisionAction.Ignore for callback in self._env.collision_callbacks)
 

@@ -234,7 +234,7 @@ _DRAWN: Mapping[SensorCommand, tuple[type, ...]] = MappingProxyType(
         SensorCommand.RenderGeometryOn: (scene.Laser, scene.FlashLidar, scene.Intrinsics),
     }
 )
-"""Device classes that viewers can draw, by command: for their measurements, and for their geometry."""
+"""Device classes that viewers can draw, by the command that starts drawing their measurements or their geometry."""
 
 _OFF = 1
 """Offset from the number of an "on" command to that of its "off" command."""

@@ -170,7 +170,7 @@ SaveArguments = str | Mapping[str, str] | Sequence[tuple[str, str]]
 """Argument ``atts`` of ``Save``: the name of a body, or strings by name; in pairs a name may be repeated."""
 
 _WITH_SENSORS = (SelectionOptions.Everything, SelectionOptions.AllExceptBody)
-"""Options of ``Save`` for which sensors that are not attached to robots are saved, too."""
+"""Options with which ``Save`` also saves sensors that are not attached to robots."""
 
 _NO_MASS = Inertial(1e-10, ZERO, ((1e-7, 0.0, 0.0), (0.0, 1e-7, 0.0), (0.0, 0.0, 1e-7)))  # as without <rigid_body>
 

@@ -408,7 +408,7 @@ _DEFAULTS = {
 
 
 _REPORTED = {"max_torque": "own_torque"}
-"""Axis attributes that infos read in place of others: the torque limit without the motor, which has its own info."""
+"""Axis attribute that infos read instead of another: torque limits exclude the motor, which has its own info."""
 
 
 def _motor_of(axis: scene.Axis, *, is_slider: bool) -> ElectricMotorActuatorInfo | None:

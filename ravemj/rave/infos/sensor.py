@@ -280,7 +280,7 @@ _OTHER_NAMES = {
     "time_measurement": "scan_time",
     "time_scan": "scan_time",
 }
-"""Device attribute of each info field with another name there. Info fields that devices lack are only stored."""
+"""Device attributes of info fields, if their names differ. Fields without a device attribute are only stored."""
 
 
 def geometry_of(device: scene.Device) -> SensorGeometry:

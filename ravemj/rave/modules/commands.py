@@ -452,7 +452,7 @@ _TOOL_GOAL: Mapping[str, Callable[[Tokens], IkParameterization]] = {
 """Readers of options with one tool goal."""
 
 _TOOL_GOALS = {"matrices": "matrix", "poses": "pose", "ikparams": "ikparam"}
-"""Options with a list of tool goals, and the option with one goal of the same form."""
+"""For each option with a list of tool goals, the option with one such goal."""
 
 _CONSTRAINT: Mapping[str, Reader] = {
     **dict.fromkeys(("constraintmatrix", "constrainttaskmatrix"), Tokens.matrix),

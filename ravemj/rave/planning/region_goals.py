@@ -237,7 +237,7 @@ def _some(rows: Floats, near: Floats, random: np.random.Generator) -> Floats:
     """Return at most ``_MOST_ROWS`` of many IK solutions.
 
     Of each set of solutions that differ by full turns, the one nearest to ``near`` has priority: paths to the others
-    are longer and reach the same tool pose. The order is random among the nearest ones.
+    are longer and reach the same tool pose. The solutions with priority are in random order.
     """
     rows = rows[np.argsort(np.linalg.norm(rows - near, axis=1), kind="stable")]
     first = np.unique(np.round(np.mod(rows, 2 * np.pi), 6), axis=0, return_index=True)[1]
