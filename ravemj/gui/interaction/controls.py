@@ -197,7 +197,10 @@ class Controls:
         return next((body for body in bodies if body.scene.dof_axes), None)
 
     def _redundant_reach(self) -> "Reach | None":
-        """Return the drag of a redundant arm if the dragged link is selected and no menu covers the slider, or None."""
+        """Return the last inverse-kinematics drag if its redundant joint has a slider now, else None.
+
+        It has one while the dragged link is selected and no menu covers the slider.
+        """
         reach, selection = self.reach, self._selector.selection
         if reach is None or reach.free_dof is None or selection is None or self.unfolded not in {"", "joints"}:
             return None

@@ -35,7 +35,10 @@ _FARTHEST = 32767
 """Largest coordinate on an X screen."""
 
 _running: dict[threading.Thread, tuple[Flag, Flag]] = {}
-"""Flags of each window thread: request to close, and has ended (instead of ``join``, which Ctrl-C can break)."""
+"""Two flags of each window thread: it must close, and it has ended.
+
+The latter replaces ``Thread.join``, which Ctrl-C can break.
+"""
 
 
 class WindowViewer(Viewer):

@@ -248,7 +248,10 @@ class Client:
         return self._renderer.render_again(self.interaction.drawn_view.camera, style.look, self._form(level, style))
 
     def _view(self, style: PageStyle) -> object:
-        """Return a key that changes if the view must be redrawn; it ignores texts and unpublished body poses."""
+        """Return a key that changes if the view must be redrawn.
+
+        It ignores texts, and body poses that the simulation has not published yet.
+        """
         view, published = self.interaction.drawn_view, self._simulation.published.number
         return view.camera, view.size, self.interaction.mode, style, self._ratio, published
 
