@@ -89,5 +89,5 @@ def _unit(parts: Sequence[float]) -> tuple[float, ...]:
 
 
 def _snapped(part: float) -> float:
-    """Round a number near +-sin 45 deg to it exactly, since right angles are frequent in quaternions."""
+    """Return +-sin 45 deg exactly if a number is close to it, since right angles are frequent in quaternions."""
     return math.copysign(_SQRT_HALF, part) if abs(abs(part) - _SQRT_HALF) < 1e-12 else part

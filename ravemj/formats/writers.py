@@ -126,7 +126,7 @@ def external_bodies(
 def _external(
     path: AnyPath, body: KinBody, number: int, diagnostics: Diagnostics, scheme: str | None
 ) -> ExternalBody | None:
-    """Return a reference to a body in the file ``path``; None, with a warning, if the file gives another body."""
+    """Return a reference to a body in the file ``path``; None, with a warning, if the body there differs."""
     try:
         reference = find_external(body, number, os.fspath(path), scheme)
         for root in body.links[:1]:

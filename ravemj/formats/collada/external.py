@@ -131,7 +131,7 @@ class _Finder:
         self._root = None if shown is None else expand(library, shown)
 
     def find(self, line: int) -> ExternalBody:
-        """Return the body whose instance or articulated system is at a line.
+        """Return the body whose instance or articulated system is at a line of the file.
 
         Raises:
             SourceError: There is no such body, or its parts have no names.

@@ -64,7 +64,10 @@ class SystemWriter:
                 yield index, place, axis
 
     def _write_parameters(self, out: XmlText, scope: str, tree: Tree, inner: str = "") -> None:
-        """Write parameters of a model and its axes in ``scope``, which refer to those in ``inner`` if given."""
+        """Write parameters of a model and its axes, with names in ``scope``.
+
+        They refer to the parameters of the scope ``inner`` if it is given, else to model and axes themselves.
+        """
         named = {f"{tree.model}_inst": f"{tree.model}_inst"}
         for index in tree.joints:
             for place in range(len(self._joints[index].axes)):

@@ -79,7 +79,10 @@ class _Gltf:
         self._held = size + sum(int(view.get("byteLength", 0)) for view in self._views)
 
     def check(self) -> None:
-        """Raise if the file declares more bytes, triangles or mesh instances than it contains or ravemj reads."""
+        """Raise if the file declares more data than it contains, or more bytes or triangles than ravemj reads.
+
+        Triangles of a mesh count once for each instance.
+        """
         check_bytes(self._held, "the buffers have", self._source)
         check_bytes(sum(map(self._size, self._accessors)), "the accessors have", self._source)
         triangles = [self._triangles(mesh) for mesh in self._entries("meshes")]

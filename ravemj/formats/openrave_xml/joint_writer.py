@@ -37,7 +37,7 @@ def needs_values(body: KinBody) -> bool:
 
 
 def _initial(body: KinBody, index: int, axis: Axis) -> float:
-    """Return an axis's value at the written link poses; a joint with neither DOFs nor an equation keeps its value."""
+    """Return the axis value at which link poses are written: the present value of a fixed joint, else the reference."""
     return axis.value if rests(body, index) else axis.reference
 
 

@@ -262,7 +262,10 @@ def read_body(element: Element, context: Context) -> tuple[KinBody, SourceError 
 
 
 def _check_type(element: Element, body: BodyBuilder, context: Context) -> None:
-    """Report a ``type`` other than that of a plain body; with any type, discard the included file as OpenRAVE does."""
+    """Report a ``type`` other than that of a plain body.
+
+    If the element has a type and includes a file, discard the content of the file, as OpenRAVE does.
+    """
     kind = element.attributes.get("type")
     if kind is None:
         return
