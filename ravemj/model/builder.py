@@ -214,8 +214,8 @@ class BodyBuilder:
     def _frozen_manipulators(self, body: scene.KinBody, diagnostics: Diagnostics) -> tuple[scene.Manipulator, ...]:
         """Return the manipulators with links, joints and DOFs resolved.
 
-        If a gripper joint does not move the effector, that manipulator has no gripper, and all later manipulators have
-        neither links nor gripper, as in OpenRAVE.
+        If a joint of an arm does not move its effector, that manipulator has no gripper, and all later manipulators
+        have neither links nor gripper, as in OpenRAVE.
         """
         frozen: list[scene.Manipulator] = []
         names: set[str] = set()
