@@ -70,7 +70,7 @@ def _run(arguments: Sequence[str]) -> int:
 
 
 def _explain(error: OSError) -> None:
-    """Print the message of an operating system error; without a file name, it concerns standard output."""
+    """Print the message of an operating system error; if it names no file, it concerns standard output."""
     reason = (error.strerror or str(error)).lower()
     if error.filename is not None:
         print_error(RavemjError(f"{error.filename}: {reason}"))

@@ -102,7 +102,7 @@ def check(options: argparse.Namespace, model: str) -> int:
 
 
 def _write(path: str, robot: str, pairs: Sequence[Touching], beside: str | None) -> None:
-    """Write an SRDF that disables collisions of pairs: the one at ``beside`` with additions, or a new one."""
+    """Write an SRDF that disables collisions of pairs: a copy of the one at ``beside`` with additions, or a new one."""
     lines = [
         f"  <disable_collisions link1={quoteattr(pair.links[0])} link2={quoteattr(pair.links[1])} "
         f'reason="{pair.reason}"/>\n'
