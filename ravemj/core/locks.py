@@ -28,7 +28,7 @@ LAST_CALL = 1.0
 """Maximum time that the exit waits for computing threads, and once more for threads that it ends [s]."""
 
 _EACH = 0.05
-"""Minimum time [s] that the exit waits for a lock after ending its holder, since another thread may get it first."""
+"""Minimum time [s] to wait for a lock at exit after ending its holder: another thread may acquire it first."""
 
 _locks: "WeakValueDictionary[int, StateLock]" = WeakValueDictionary()
 _before_end: list[Callable[[], object]] = []

@@ -158,7 +158,10 @@ def _real(path: AnyPath) -> Path:
 
 
 def _foreign_entries(folder: Path, patterns: Collection[str]) -> Iterator[str]:
-    """Yield the entries of a folder that match none of the patterns, directly or in a subfolder."""
+    """Yield the files and folders in a folder, recursively, whose relative path matches none of the patterns.
+
+    A folder that contains the files of a pattern is not yielded.
+    """
     folders = {pattern.rpartition("/")[0] for pattern in patterns}
     for entry in folder.rglob("*"):
         name = entry.relative_to(folder).as_posix()
