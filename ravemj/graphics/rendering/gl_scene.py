@@ -254,7 +254,7 @@ class GlScene:
                 light.pos = center - (near + _SHADOW_DISTANCE * radius) * light.dir
 
     def _paint_background(self) -> None:
-        """Upload a new skybox if the background changed; the model keeps its own texture."""
+        """Upload a new skybox to the graphics card if the background changed; the texture in the model is restored."""
         background = self._look.background
         if self._skybox is None or self._painted == (background,):
             return
