@@ -151,7 +151,10 @@ class PoseSet:
         return -displacement, rates
 
     def _displaced(self, D: Floats) -> tuple[Floats, Floats]:
-        """Return the coordinates of the relative pose ``D``, its angles chosen for least excess, and their excess."""
+        """Return the coordinates of the relative pose ``D``, and by how much each exceeds its bounds.
+
+        Of equivalent angles, those that exceed their bounds least are chosen.
+        """
         if self.lean is not None:
             return self._leaned(D, self.lean)
         best, least = None, math.inf
@@ -169,7 +172,10 @@ class PoseSet:
         return np.array([*lengths, *angles]), np.array([*far, *beyond])
 
     def _triples(self, rows: list[list[float]]) -> list[list[float]]:
-        """Return the two (roll, pitch, yaw) of a rotation, or one at gimbal lock, near the middle of the bounds."""
+        """Return the two equivalent (roll, pitch, yaw) of a rotation, or one at gimbal lock.
+
+        Each angle is shifted by full turns to be nearest to the middle of its bounds.
+        """
         (r00, r01, _), (r10, r11, _), (r20, r21, r22) = rows
         cosine = math.hypot(r00, r10)
         pitch, rolls, pitches, yaws = math.atan2(-r20, cosine), *self._bounds[3:]
@@ -269,7 +275,10 @@ def _angle_rates(pitch: float, yaw: float) -> Floats:
 
 
 def _lean_rates(D: Floats) -> Floats:
-    """Return the matrix, (3, 3), from angular velocity in frame *w* to rates of lean (row 0) and yaw (row 2)."""
+    """Return the matrix, (3, 3), from angular velocity to the rates of the lean angle (row 0) and of yaw (row 2).
+
+    The angular velocity is in the region's frame *w*; row 1 is 0.
+    """
     x, y, z = D[:3, 2].tolist()
     level = math.hypot(x, y) or 1.0
     over = max(1 + z, _LOCK)
