@@ -182,7 +182,7 @@ class ClosedForm:
         return [turn.reshape(len(turn), *values.shape[1:]) for turn in flat]
 
     def _turns(self, poses: Floats, locked: Floats, shape: tuple[int, ...]) -> Turns:
-        """Return the family's solution for each joint, as cosine and sine (2, B, N) or distances (1, B, N)."""
+        """Return the solutions of the solver family by joint: cosine and sine (2, B, N) or distances (1, B, N)."""
         if self._one_pose is not None and len(poses) == 1:
             return self._turns_of_one(poses[0], self._one_pose)
         reach = self.chain.reach
@@ -201,7 +201,7 @@ class ClosedForm:
         return [_filled(tile(turn, branches), (len(turn), *shape)) for turn in turns]
 
     def _turns_of_one(self, pose: Floats, solver: OnePose) -> Floats:
-        """Return the family's solution of a single pose, computed in Python floats, shape (6, 2, B, 1)."""
+        """Return the solutions of the solver family for one pose, computed in Python floats, shape (6, 2, B, 1)."""
         motion = pose @ self._tool
         motion[:3, 3] /= self.chain.reach
         x, y, z, _ = motion.tolist()

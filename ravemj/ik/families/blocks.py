@@ -61,7 +61,7 @@ class Wrist:
         return [turn, two, turn_between(last, self.side, middle.turned_back(two, side))]
 
     def _middle(self, tip: Floats) -> Floats:
-        """Return both solutions of the wrist's middle joint, as cosine and sine, for a direction of the last axis.
+        """Return both solutions of the wrist's middle joint, as cosine and sine, for the last axis along ``tip``.
 
         They are computed from distances of unit vectors, since the cosine of the angle would lose half of the digits
         if the outer axes nearly coincide.
