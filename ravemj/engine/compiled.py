@@ -80,7 +80,7 @@ class Compiled:
         return compiled
 
     def _report(self, complaint: str, scene: Scene, diagnostics: Diagnostics) -> None:
-        """Record a warning of MuJoCo as a diagnostic, at the source of the link if the warning names a DOF."""
+        """Record a warning of MuJoCo as a diagnostic; if it names a DOF, at the link's position in the user's file."""
         source, about = Source("the translated model", 0), ""
         match = _DOF.search(complaint)
         if match:

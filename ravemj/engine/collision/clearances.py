@@ -180,7 +180,7 @@ class Clearances:
         mujoco.mj_kinematics(self._model, self._data)
 
     def _travel(self, changes: Floats, rows: Ints, pairs: Ints) -> Floats:
-        """Return for each case the maximum relative travel of its two geoms [m], shape (k,)."""
+        """Return the maximum relative travel [m] of the geoms of each pair in its configuration (row), shape (k,)."""
         count, which = len(changes), self._rows[:, pairs]
         is_used = np.zeros(len(self._moving) + 1, dtype=bool)
         is_used[which] = True  # -1, in place of what does not move, is the last one
@@ -203,10 +203,10 @@ class Clearances:
         return flat[first] + flat[second]
 
     def _separate(self, cases: _Cases, some: Ints, directions: Floats | None = None, *, exactly: bool = False) -> None:
-        """Raise gap bounds of some cases by separating planes; ``directions`` are unit normals or NaN, shape (k, 3).
+        """Raise gap bounds of the cases with the indices ``some`` by separating planes with the normals ``directions``.
 
-        The default normals are the directions of the last measurements. Unless ``exactly``, meshes are replaced by
-        their bounding boxes.
+        These are unit vectors or NaN, shape (k, 3); by default the directions of the last measurements. Unless
+        ``exactly``, meshes are replaced by their bounding boxes.
         """
         if not len(some):
             return
@@ -222,7 +222,7 @@ class Clearances:
         cases.gaps[some] = np.fmax(cases.gaps[some], -ends[:count] - ends[count:])
 
     def _measure(self, cases: _Cases, some: Ints) -> None:
-        """Measure the distances of some cases, and raise the bounds of their gaps."""
+        """Measure the distances of the cases with the indices ``some``, and raise the bounds of their gaps."""
         model, data = self._model, self._data
         pairs = cases.pairs[some]
         first, second = self._first[pairs].tolist(), self._second[pairs].tolist()
