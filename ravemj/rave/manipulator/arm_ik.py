@@ -127,7 +127,7 @@ class ArmIk(ApiObject):
     GetEndEffectorTransform = GetGraspTransform = GetTransform
 
     def _tool(self) -> Tool:
-        """Return the tool and the joints as arrays, cached until the description changes."""
+        """Return the tool and the joints as arrays, cached until the manipulator's description changes."""
         arm = self._scene
         if self._known is None or self._known.arm is not arm:
             self._known = Tool.for_arm(arm)
