@@ -250,7 +250,7 @@ class BodyDynamics:
             target[first + 3 : first + 6] = values[root][3:] @ rotation
 
     def _arms(self) -> Floats:
-        """Return the links' origins relative to the reference point of MuJoCo's motions [m], shape (links, 3)."""
+        """Return the lever arms of MuJoCo's link velocities: reference point to link origin [m], shape (links, 3)."""
         ids = self._kinematics.body_ids
         return self._data.xpos.take(ids, 0) - self._data.subtree_com.take(self._root_ids, 0)
 
