@@ -99,7 +99,7 @@ def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -
 
 
 def _parents_first(placing: set[int], ends: Sequence[tuple[int, ...]], order: Sequence[int]) -> tuple[int, ...]:
-    """Sort the joints that place links, so that each follows the joint that places its parent link."""
+    """Sort the joints that determine link poses, so that each follows the one whose child is its parent link."""
     placed_by = {ends[index][1]: index for index in placing}
 
     def carrying(index: int) -> list[int]:
@@ -113,7 +113,7 @@ def _depths(static_links: Sequence[bool], edges: Sequence[Edge]) -> list[int]:
     """Return the depth of each link: one more than the smallest known depth of its parents.
 
     A parent is the previous link on a simple path from link 0. Therefore a static link, whose depth is 0, determines
-    depths only on its far side from link 0.
+    depths only of links to which a path from link 0 passes through it.
     """
     neighbours: list[list[int]] = [[] for _ in static_links]
     for edge in edges:
