@@ -40,7 +40,10 @@ def reach(options: argparse.Namespace) -> int:
 
 
 def _solved(robot: Robot, options: argparse.Namespace) -> WholeBodyResult:
-    """Solve and move the robot. With kept contacts, the base is free, and the centre of mass keeps its x and y."""
+    """Solve and move the robot.
+
+    If contacts are kept, the base is free, and the centre of mass keeps its x and y.
+    """
     kept = [name for names in options.keep for name in names]
     ik = WholeBodyIK(robot, base=bool(kept))
     for name in kept:
