@@ -209,7 +209,10 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
 
 
 def _lost(file: MeshFile | None) -> tuple[MeshPart, ...]:
-    """Return OpenRAVE's parts of a missing file: none (gap-71), or a reddish part for most absolute paths (gap-72)."""
+    """Return the mesh parts that OpenRAVE creates for a missing file.
+
+    For most absolute paths, this is a reddish part (gap-72), else there is none (gap-71).
+    """
     if file is None or not os.path.isabs(file.name) or file.name.lower().endswith(".stl") or os.path.isfile(file.name):
         return ()
     return (_REDDISH,)
