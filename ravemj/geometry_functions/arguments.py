@@ -1,7 +1,7 @@
 """Checks of the arguments of the geometry functions.
 
 As in OpenRAVE, too short vectors are errors, and longer ones are truncated. A wrong shape is a ``ValueError``, as in
-OpenRAVE's bindings (gap-03, random-api-6).
+OpenRAVE's bindings (conformance cases gap-03 and random-api-6).
 """
 
 import numpy as np

@@ -57,8 +57,8 @@ def intersectSegments(L0: ArrayLike, L1: ArrayLike) -> tuple[Floats, float]:
     """Return the midpoint of the shortest connection of two lines in space, each given by two points, shape (2, 3).
 
     Returns:
-        The point halfway between ``L0`` and ``L1``, shape (3,), and their distance, positive if the direction of ``L1``
-        x that of ``L0`` points from ``L1`` to ``L0``.
+        The point halfway between ``L0`` and ``L1``, shape (3,), and the signed distance of the lines: positive if the
+        cross product of their directions, that of ``L1`` first, points from ``L1`` to ``L0``.
 
     Raises:
         ArgumentError: the lines are parallel.

@@ -4,7 +4,7 @@ By type, the values are: ``Transform6D``: the pose [w, x, y, z, tx, ty, tz]; ``R
 ``Translation3D`` and ``Lookat3D``: the point; ``Direction3D``: the direction; ``Ray4D`` and ``TranslationDirection5D``:
 direction and point; ``TranslationXY2D``: x and y; ``TranslationXYOrientation3D``: x, y and the angle;
 ``TranslationLocalGlobal6D``: a point of the tool and its desired position; types with ``AxisAngle``: angle and point.
-The last angle is in the arm's base frame, and transforms of goals do not change it.
+This angle is relative to the arm's base, and transforms of goals do not change it.
 """
 
 import math
@@ -42,7 +42,7 @@ _UNIT = 0.01
 def goal_transform(value: ArrayLike, name: str) -> Floats:
     """Return the pose of a goal, shape (4, 4), as ``checked_transform`` does; warn if its rotation is scaled.
 
-    As in OpenRAVE, scaling a matrix changes its rotation.
+    As in OpenRAVE, a scaled rotation matrix gives another rotation than the same matrix without the scale.
 
     Raises:
         ValueError: it has another shape.

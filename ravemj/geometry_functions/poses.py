@@ -99,7 +99,8 @@ def _linear(matrix: ArrayLike) -> tuple[Floats, Floats]:
 def transformLookat(lookat: ArrayLike, camerapos: ArrayLike, cameraup: ArrayLike) -> Floats:
     """Return the pose, shape (4, 4), of a camera whose z axis points at ``lookat``.
 
-    If camera and point coincide, z is that of the world; if the y axis is undefined, it is y of the world, then x.
+    If camera and point coincide, the camera's z axis is that of the world. If ``cameraup`` is parallel to the z axis,
+    the world's y axis replaces it, or the x axis if y is parallel, too.
 
     Args:
         lookat: The point.

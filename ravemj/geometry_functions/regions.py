@@ -18,7 +18,7 @@ _LOCK = 1e-7
 """Cosine of the pitch below which roll and yaw rotate about one axis."""
 
 _LENGTH, _PART, _ANGLE = 1e-9, 1e-6, 1e-6
-"""Tolerances of a membership test: lengths [m], lengths relative to those involved, and angles [rad]."""
+"""Tolerances of a membership test: length [m], length relative to the coordinates of the poses, and angle [rad]."""
 
 _POINT_SHARE = 0.1
 """Minimum weight of a region in a union, relative to the mean width, so that point regions are sampled, too."""
@@ -86,7 +86,10 @@ class PoseSet:
         return bool(displacement[:3].max() <= _LENGTH + _PART * sum(lengths) and displacement[3:].max() <= _ANGLE)
 
     def width(self) -> float:
-        """Return the sum of the widths of the six intervals [m and rad]; a lean counts as roll and pitch up to it."""
+        """Return the sum of the widths of the six intervals [m and rad].
+
+        With a lean, the widths of roll and pitch are ``2 * lean`` each.
+        """
         widths = [upper - lower for lower, upper in self._bounds]
         return sum(widths) if self.lean is None else sum(widths[:3]) + 4 * self.lean + widths[5]
 
@@ -129,14 +132,15 @@ class PoseSet:
         return self._displaced(D)[1]
 
     def error(self, D: Floats) -> tuple[Floats, Floats]:
-        """Return the error of a pose relative to the region, and its derivative by velocities.
+        """Return the error of a pose relative to the region, and its negative derivative with respect to velocities.
 
         Args:
             D: ``relative`` of the pose, shape (4, 4).
 
         Returns:
-            The error [m and rad], shape (6,), 0 inside the bounds; and its derivative by the velocity of the origin of
-            ``D`` and the angular velocity, in axes of *w*, shape (6, 6). Rows of zero errors are 0.
+            The error [m and rad], shape (6,), 0 inside the bounds; and its negative derivative with respect to the
+            velocity of the origin of ``D`` and the angular velocity, in axes of *w*, shape (6, 6). Rows of zero errors
+            are 0.
         """
         coordinates, displacement = self._displaced(D)
         rates = np.zeros((6, 6))

@@ -44,8 +44,8 @@ class Check:
     """The check of one exercise.
 
     Attributes:
-        function: Name of the function that the student writes. If the file is not Python: a function of the file's
-            path that returns the function to check.
+        function: Name of the function that the student writes. For a file that is not Python, a loader instead: it
+            takes the file's path, and returns the function to check.
         question: Returns the arguments of one call, given a random generator.
         answer: Returns the right answer for these arguments.
         hints: Three hints; the last one nearly gives the answer.
@@ -94,7 +94,7 @@ class Check:
         return f"off by {off:.3g}" + {"position": " m", "joint values": " rad"}.get(self.kind, "")
 
     def misshapen(self, given: object, arguments: Arguments) -> str | None:
-        """Return the error in an answer's form as a sentence: type, shape, numbers that are not finite; or None."""
+        """Return the error in an answer's form as a sentence, or None: type, shape, or numbers that are not finite."""
         if given is None:
             return "it returns None; is there a return at its end?"
         if given is ...:
@@ -115,7 +115,8 @@ class Check:
     def distance(self, answer: Floats, other: Floats) -> float:
         """Return the maximum difference of two answers, regardless of the signs of quaternions.
 
-        Points and joint values that a judge decides about may be in any order.
+        If the check has a ``judge``, rows of points or joint values may be in any order, except in paths
+        (``any_length``).
         """
         if not answer.size:
             return 0.0
@@ -147,7 +148,7 @@ def precision(given: object) -> float:
 def shortened(thing: object, length: int = 60) -> str:
     """Return the text of an object, or the name of a robot, in one line of limited length.
 
-    Arrays and lists of numbers have the same text.
+    An array and a list of the same numbers give the same text.
     """
     name = getattr(thing, "GetName", None)
     if callable(name):

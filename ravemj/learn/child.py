@@ -31,7 +31,7 @@ class Verdict:
     """Result of checking an exercise.
 
     Attributes:
-        status: Whether it is solved; ``untouched`` while the placeholder ``...`` is in the file.
+        status: Status of the exercise, such as ``solved``; ``untouched`` while the placeholder ``...`` is in the file.
         message: The error as a sentence; "" if solved.
         mistake: The classical mistake that explains the error; "" if none does.
         tried: The call that shows the error.
@@ -40,7 +40,7 @@ class Verdict:
         right: Number of right answers.
         asked: Number of questions.
         seed: Seed of the questions.
-        question: Index of the question of the message.
+        question: Index of the question that ``message`` refers to.
         answer: The student's result as numbers; None if it is not numbers.
         output: Printed output of the student's code.
     """
@@ -186,7 +186,7 @@ def _has_hole(tree: ast.Module, name: str) -> bool:
 
 
 def call_text(check: Check, arguments: Arguments) -> str:
-    """Return a call of the student's function as text; "" for a model, which has no arguments."""
+    """Return a call of the student's function as text; "" if it has no arguments."""
     if not arguments:
         return ""
     name = check.function if isinstance(check.function, str) else "joint values"

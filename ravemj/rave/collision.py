@@ -230,7 +230,7 @@ class CollisionChecker(Interface):
 
     @property
     def is_plain(self) -> bool:
-        """Whether the engine's default tests give the same answers: no user callbacks, no geometry groups."""
+        """Whether the engine's default tests suffice: there are no user callbacks and no geometry groups."""
         return type(self) is CollisionChecker and not self.groups.is_used and not self._env.collision_callbacks
 
     def world(self) -> CollisionWorld:

@@ -91,7 +91,7 @@ class InterfaceAddMode(NamedInt):
     StrictNameChecking = 1
     """Raise an error."""
     StrictIdChecking = 2
-    """Add the object under a new, unique name; ids are never changed here."""
+    """Add the object under a new, unique name; ravemj never changes ids."""
     StrictNameIdChecking = 3
     """Raise an error."""
 
@@ -174,7 +174,7 @@ class DebugLevel(NamedInt):
     Debug = 4
     Verbose = 5
     VerifyPlans = 0x80000000
-    """Flag that can be added to a level."""
+    """Flag that can be added to a level; it has no effect."""
 
 
 class IkFilterOptions(NamedFlag):
@@ -315,7 +315,7 @@ class PlannerAction(NamedInt):
 
 
 class Interval(NamedFlag):
-    """End points that belong to an interval. OpenRAVE has the interpolations between waypoints here, too."""
+    """End points that belong to an interval, and OpenRAVE's flags of interpolations, such as ``Cubic``."""
 
     Open = Default = 0
     OpenStart = 1

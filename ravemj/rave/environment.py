@@ -204,8 +204,8 @@ class Environment(Loading, Saving, Viewing):
         stands still in the copy until ``StartSimulation``.
 
         Args:
-            options: What to copy, a ``CloningOptions``: bodies only with ``Bodies``, sensors that no robot carries only
-                with ``Sensors``; gravity and the view are always copied.
+            options: What to copy, ``CloningOptions``: ``Bodies`` copies the bodies, ``Sensors`` the sensors that no
+                robot carries. Gravity and the view are always copied.
             clonedEnvName: The new environment's name; may also come before the options, as in OpenRAVE.
 
         Example:
@@ -352,13 +352,14 @@ class Environment(Loading, Saving, Viewing):
             state: Group state of the SRDF to start from; None for the one called home, standing or half_sitting, else
                 the present joint values.
             self_collision: Whether links of one robot collide.
-            exclude: ``touching`` excludes pairs of links that are adjacent or touch at the start; ``none`` none.
+            exclude: ``touching`` excludes pairs of links that are adjacent or touch at the start; ``none`` excludes no
+                pairs.
             decompose: Whether meshes collide as several convex parts, not as one hull; needs ``ravemj[decompose]``.
             hull_vertices: Maximum number of vertices of a collision hull; 0 means no limit.
             merge_fixed: Whether links that cannot move become shapes and sites of the links that carry them.
             sensors: Whether there are sensors of joints, an IMU at the base, and the sensors of the model.
             append: File with a fragment of MJCF whose elements are added.
-            timestep: Time step [s], which the computed gains also suit; None means 0.002.
+            timestep: Time step [s], for which gains are computed as well; None means 0.002.
 
         Raises:
             ArgumentError: an argument is wrong, or the state is not in the SRDF.

@@ -22,9 +22,9 @@ from ravemj.rave.trimesh import TriMesh, checked_mesh, trimesh_of
 class Geometry(ApiObject):
     """A shape of a link; ``link.GetGeometries()`` returns the shapes.
 
-    Boxes and round shapes share the same three numbers, as in OpenRAVE (half extents; radius; radius and height), so
-    each size getter works for all of them. For other types, getters of sizes that the type lacks raise an error.
-    Setters take effect at once, also in viewers and pictures.
+    As in OpenRAVE, boxes and round shapes store their sizes in the same three numbers (half extents; radius; radius and
+    height), and each size getter reads these numbers, whatever the shape. For other types, getters of sizes that the
+    type lacks raise an error. Setters take effect at once, also in viewers and pictures.
 
     Example:
         >>> for geometry in link.GetGeometries():
@@ -128,7 +128,10 @@ class Geometry(ApiObject):
         return shape
 
     def GetContainerOuterExtents(self) -> Floats:
-        """Return the outer edge lengths of a container [m], shape (3,); for other shapes the sizes, as in OpenRAVE."""
+        """Return the outer edge lengths of a container [m], shape (3,).
+
+        For boxes and round shapes, return their three size numbers, as in OpenRAVE.
+        """
         shape = self._scene.shape
         return np.array(shape.outer_extents if isinstance(shape, scene.Container) else self._sizes())
 

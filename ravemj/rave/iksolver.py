@@ -509,9 +509,9 @@ class IkSolver(Interface):
     def RegisterCustomFilter(self, priority: int, callback: FilterFunction) -> Handle:
         """Register a callback that accepts or rejects solutions.
 
-        If it rejects the solutions at all samples of a free joint, it is called for the ends, the middle and eight more
-        points of each interval of the joint's values. Solutions that it would accept only between these points are
-        missed, and so are those in gaps narrower than a sampling step.
+        If it rejects the solutions at all samples of a free joint, values between the samples are tried: the ends, the
+        middle and eight more values of each interval of the joint in which solutions exist. Solutions that it would
+        accept only between these values are missed, and so may be those in intervals narrower than a sampling step.
 
         Args:
             priority: Callbacks of higher priority are called first; those above 0 before collision checks.

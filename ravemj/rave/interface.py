@@ -37,7 +37,7 @@ class Annotated(Protocol):
 def SetUserData(self: Annotated, key: Any = "", data: Any = ...) -> None:  # noqa: ANN401 - any object of the user's
     """Attach an object of the user: ``SetUserData(data)`` or ``SetUserData(key, data)``.
 
-    The owner keeps the object alive. ``GetUserData`` returns it.
+    This environment or interface keeps the object alive. ``GetUserData`` returns it.
 
     Args:
         key: The name; or the object itself, if it is the only argument.

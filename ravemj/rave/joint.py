@@ -266,8 +266,9 @@ class Joint(Member):
         return np.array(rotate(conjugate(self._left().wxyz), self._axis(axis).direction))
 
     def GetInternalHierarchyLeftTransform(self) -> Floats:
-        """Return the joint frame in the parent link: z is a hinge's axis, other frames are parallel to the link.
+        """Return the pose of the joint frame in the parent link.
 
+        The z axis of a hinge's frame is the hinge's axis; the frames of other joints are parallel to the link frame.
         The child is at ``left @ motion @ right``, where ``motion`` turns about or slides along the axis by the joint's
         value.
 

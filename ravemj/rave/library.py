@@ -46,8 +46,8 @@ def RaveLoadPlugin(filename: str) -> bool:
         filename: Name of the plugin, or its file.
 
     Returns:
-        True for or_urdf and for the plugins that come with OpenRAVE, whose interfaces are built into ravemj, if
-        supported. False for all others, as in OpenRAVE when it cannot load a plugin; a warning is logged.
+        True for or_urdf and for OpenRAVE's own plugins; ravemj contains those of their interfaces that it supports.
+        False for all others, as in OpenRAVE when it cannot load a plugin; a warning is logged.
     """
     if Path(filename).name.split(".")[0].removeprefix("lib") in _PLUGINS.split():
         return True

@@ -267,7 +267,7 @@ class Link(Member):
             geometryinfos: The descriptions of the new geometries.
 
         Raises:
-            openrave_exception: a description does not make a geometry; the link stays as it is.
+            openrave_exception: a description is invalid; the link stays as it is.
         """
         self._set_own_geometries(geometries_of(geometryinfos))
 
@@ -279,8 +279,8 @@ class Link(Member):
             addToGroups: Whether to add it to all groups as well.
 
         Raises:
-            openrave_exception: the description does not make a geometry, or the link has a geometry of that name; the
-                link stays as it is.
+            openrave_exception: the description is invalid, or the link has a geometry of that name; the link stays as
+                it is.
         """
         added = geometries_of([geometryinfo])
         if any(geometry.name == added[0].name for geometry in self._scene.geometries if geometry.name):

@@ -72,8 +72,8 @@ def record(  # noqa: PLR0913 - keyword arguments
         camera: ``T_world_camera``, 4x4, z forward and y down. The default is the viewer's, else the file's, else a view
             of the whole motion.
         background: Red, green, blue from 0 to 1. The default is the viewer's, else the file's, else a gradient.
-        shadows: Whether lights cast shadows; None: if OpenGL draws with a graphics card, as they take most of the time
-            without one.
+        shadows: Whether lights cast shadows; None: only with a graphics card, since without one they take most of the
+            time.
         floor: ``on`` draws a floor with a grid below the bodies, ``off`` none; ``auto`` draws one if neither script nor
             file sets a background.
         lights: ``studio``, ``model`` (the model's own lights) or ``both``.

@@ -48,7 +48,7 @@ class Region(ApiObject):
         T0_w: The pose of the region in the frame: 4x4, 3x4 or 7 numbers; by default the frame itself.
         Tw_e: The pose of the tool in the region where all coordinates are 0; by default the region itself.
         Bw: Lower and upper bounds of x, y, z [m], roll, pitch, yaw [rad], shape (6, 2); by default zeros. Lengths may
-            be unbounded (``inf``) in constraints; an angle of a turn or more is free.
+            be unbounded (``inf``) in constraints; an angle whose bounds are a turn or more apart is free.
         lean: Maximum angle [rad] between the z axes of region and tool. It replaces the bounds of roll and pitch, which
             allow more combined: 15 degrees each give 21 degrees. The yaw is then about the z axis of the tool.
         frame: The link or body that carries the region, at its pose at the time of use; None means the world.
@@ -171,7 +171,9 @@ class Region(ApiObject):
         return self.at_present().nearest(_pose(T_world_tool, "T_world_tool"))
 
     def contains(self, T_world_tool: ArrayLike) -> bool:
-        """Return whether a pose is in the region, with tolerances of 1e-6 rad and 1e-6 of the lengths involved.
+        """Return whether a pose is in the region, within tolerances.
+
+        These are 1e-6 rad for angles; for lengths 1e-6 of the largest coordinates of the pose, ``T0_w`` and ``Tw_e``.
 
         Args:
             T_world_tool: The pose of the tool: 4x4, 3x4 or 7 numbers.

@@ -34,7 +34,7 @@ class Contact:
 
 
 class Part(NamedTuple):
-    """One geometry of a colliding pair, as API objects."""
+    """Link and geometry on one side of a colliding pair, as API objects."""
 
     link: "Link"
     geometry: "Geometry"

@@ -47,10 +47,10 @@ class Trajectory(Interface):
     _internal = ("is_certified", "set_waypoints", "take", "waypoints")
 
     start_index: int = -1
-    """Index of the start of ``BaseManipulation`` at which a planned motion begins; -1 if unknown."""
+    """Index of the start configuration at which a motion planned by ``BaseManipulation`` begins; -1 if unknown."""
 
     goal_index: int = -1
-    """Index of the goal that the motion reaches; regions are counted after the goals. -1 if unknown."""
+    """Index of the goal that the motion reaches: configurations are counted first, then regions; -1 if unknown."""
 
     def __init__(self, env: "Environment", xmlid: str) -> None:
         super().__init__(env, xmlid)

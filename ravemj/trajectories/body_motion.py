@@ -23,7 +23,7 @@ class BodyMotion:
         bodies: The moving bodies.
         duration: The end time [s]; it starts at 0.
         place: Sets the configurations of the bodies at a time [s], clamped to joint limits.
-        rows: For each body, the given joint values of the rows or waypoints, shape (N, dof).
+        rows: Joint values of each body at the rows of the motion or the waypoints of the trajectory, shape (N, dof).
     """
 
     bodies: tuple[BodyState, ...]
@@ -33,7 +33,7 @@ class BodyMotion:
 
     @classmethod
     def of_motion(cls, body: BodyState, motion: Motion) -> "BodyMotion":
-        """Drive a body along the joint values of a motion, clamped to its limits.
+        """Drive a body along the joint values of a motion, clamped to the body's limits.
 
         Raises:
             ArgumentError: the number of joints differs from the body's.

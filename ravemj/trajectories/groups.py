@@ -28,7 +28,7 @@ class Group:
     """Group of related values in a configuration.
 
     Attributes:
-        name: The kind of values and their owner, for instance ``joint_values BarrettWAM 0 1 2``.
+        name: The kind of the values, then their body and further words, for instance ``joint_values BarrettWAM 0 1 2``.
         offset: The index of the first value in the configuration.
         dof: The number of values.
         interpolation: The interpolation between waypoints: ``previous``, ``next``, ``linear``, ``quadratic``,

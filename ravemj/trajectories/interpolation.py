@@ -18,7 +18,7 @@ Ends = tuple[Floats, Floats]
 """Values at the two waypoints of a segment."""
 
 ROUNDING = 2.3e-16
-"""Maximum difference of a time from the time of a waypoint that is ignored [s, or fraction of the segment]."""
+"""Tolerance within which a time counts as that of a waypoint [s, or fraction of the segment]."""
 
 HELD = ("", "previous", "next", "max")
 """Piecewise-constant interpolations, which use the value of one waypoint."""

@@ -77,7 +77,7 @@ class Motion:
     def sample(self, t: float) -> Floats:
         """Return the (dof,) joint values at time t [s], clamped to the start and the end of the motion.
 
-        Interpolated values stay between those of the two adjacent rows, so they stay within limits that the rows keep.
+        Interpolated values are between those of the two adjacent rows, so they are within joint limits if the rows are.
         """
         if math.isnan(t):
             raise ArgumentError("expected a time in seconds, found nan")

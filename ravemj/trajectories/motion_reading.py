@@ -41,7 +41,7 @@ class MotionTable(NamedTuple):
     """Content of a motion file.
 
     Attributes:
-        source: The position of the column names.
+        source: The file, with the line of the column names in ``.csv``.
         names: Column names by their number in the file, from 1; None if the file has none.
         motion: The columns over time.
     """
@@ -105,7 +105,7 @@ def read_table(path: str | os.PathLike[str]) -> MotionTable:
 
 @contextmanager
 def problems_in(file: str) -> Generator[None]:
-    """Convert errors of Python, numpy and constructors about a file to ``SourceError``."""
+    """Context manager that converts errors of Python, numpy and ravemj about a file to ``SourceError``."""
     try:
         yield
     except SourceError:

@@ -67,8 +67,8 @@ class Waypoints:
         Args:
             index: The waypoint before which they are inserted.
             numbers: The configurations, concatenated.
-            groups: Their layout. Values that it lacks do not change in overwritten waypoints; in new waypoints they are
-                the present joint values for a group that is partly given, else zeros.
+            groups: Their layout. Overwritten waypoints keep the values that it lacks. In new waypoints, missing joints
+                of a group get their current values, and missing groups zeros.
             overwrite: Whether to overwrite waypoints; data beyond the last one is appended.
             find_body: Finds the bodies of the groups.
 
@@ -149,7 +149,8 @@ class Waypoints:
 
         Args:
             time: Time [s] since the start.
-            restamped: Whether ``deltatime`` is the time since the last waypoint; else it is that of the next waypoint.
+            restamped: Whether to set ``deltatime`` to the time since the previous waypoint; otherwise it is that of the
+                next waypoint.
             find_body: Finds the bodies of the groups, whose circular joints take the shorter arc.
 
         Raises:
@@ -202,7 +203,8 @@ class Waypoints:
             (k, n).
 
         Raises:
-            ArgumentError: the layout has no time, a group jumps, or derivatives for the interpolation are missing.
+            ArgumentError: the layout has no time, a value is discontinuous, or derivatives for the interpolation are
+                missing.
         """
         column, times = self._timed(), self.times()
         for index in range(1, len(self)):

@@ -51,7 +51,7 @@ class Settings:
         friction: Friction coefficient.
         avoidlinks: Names of links that must not touch.
         plannername: Name of the grasp planner; None: the default.
-        translationstepmult: Metres of a step per radian; None: the default.
+        translationstepmult: Factor of the steps for sliders and the hand's translation [m/rad]; None: the default.
         finestep: Tolerance of contacts [rad]; None: the default.
         graspingnoise: Random displacement of the target [m].
         tries: Number of runs with noise.
@@ -145,7 +145,7 @@ def try_candidates(
     Args:
         env: An environment with robot and target.
         items: Rows of candidates.
-        random: Not used: noise is the planner's.
+        random: Not used: the grasp planner makes the noise.
         options: The fields of `Settings`.
     """
     del random

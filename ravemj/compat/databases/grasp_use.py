@@ -132,7 +132,7 @@ class GraspUse(ApproachRays):
             graspingnoise: Random displacement of the target [m].
             translate: Whether the hand may translate towards the target; otherwise only the fingers move.
             forceclosure: Whether to compute ``mindist`` and ``volume``.
-            translationstepmult: Metres of a step per radian; None: the model's.
+            translationstepmult: Factor of the steps for sliders and the hand's translation [m/rad]; None: the model's.
             finestep: Tolerance of contacts [rad]; None: the model's.
 
         Returns:
@@ -212,8 +212,9 @@ class GraspUse(ApproachRays):
     ) -> Run:
         """Simulate a grasp, and repeat it with noise; ``mindist`` is 0 if the results differ too much.
 
-        They differ too much if the mean standard deviation of the robot's position along each axis, plus that of the
-        fingertips of each gripper joint, exceeds 0.7 of the noise.
+        They differ too much if their deviation exceeds 0.7 of the noise. It is the standard deviation of the robot's
+        coordinates, averaged over x, y, z, plus that of the gripper's joint values times ``jointmaxlengths``, averaged
+        over the joints.
 
         Args:
             graspingnoise: Random displacement of the target [m].

@@ -97,7 +97,8 @@ class BaseManipulation(Helper):
             constraints: Constraints along the whole motion; see ``PlannerParameters.add_constraint``.
             holding: As for ``MoveToHandPosition``.
             certify: Whether to certify that the motion is free of collisions at all times: ``trajectory.certificate``
-                has the result; by default if there are regions. ``"required"`` makes uncertified motions errors.
+                has the result. The default is True if there are regions, else False. ``"required"`` makes uncertified
+                motions errors.
 
         Raises:
             PlanningError: no motion was found.

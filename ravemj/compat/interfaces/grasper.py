@@ -119,7 +119,8 @@ class Grasper(Helper):
             transformrobot: Whether the hand is placed and moves to the target; otherwise only the fingers move.
             onlycontacttarget: Whether contact with another body is a failure.
             tightgrasp: Not used, as in OpenRAVE.
-            graspingnoise: Largest random error of the target along each axis [m]: the target itself does not move.
+            graspingnoise: Largest random error of the assumed position of the target along each axis [m]; the target
+                itself does not move.
             execute: Whether the controller moves the joints to those of the grasp; None: it does.
             translationstepmult: Factor of the steps for sliders and the hand's translation [m/rad]; None: 0.1.
             outputfinal: Whether to return the last configuration.
@@ -215,7 +216,7 @@ class Grasper(Helper):
             forceclosurethreshold: Minimum ``mindist`` of a grasp; None: grasps need not be in force closure.
             collisionchecker: Not used.
             translationstepmult: As in ``Grasp``.
-            numthreads: Number of processes that simulate candidates; the grasps are the same. None: 1.
+            numthreads: Number of processes that simulate candidates, which does not change the grasps. None: 1.
             startindex: Index of the first candidate.
             maxgrasps: Maximum number of grasps; None means no limit.
             finestep: As in ``Grasp``.

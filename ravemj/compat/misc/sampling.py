@@ -17,7 +17,7 @@ class SpaceSamplerExtra:
         """Return directions.
 
         Args:
-            level: 12 * 4^level of them.
+            level: Level of refinement; there are 12 * 4^level directions.
             angledelta: Angle between neighbours [rad], in place of a level.
 
         Returns:
@@ -34,7 +34,7 @@ class SpaceSamplerExtra:
         """Return rotations.
 
         Args:
-            level: 72 * 8^level of them.
+            level: Level of refinement; there are 72 * 8^level rotations.
             quatdelta: Angle between neighbours [rad], in place of a level.
 
         Returns:

@@ -138,11 +138,11 @@ class DynamicsCollisionConstraint(ApiObject):
         options: int = 0xFFFF,
         filterreturn: bool = False,
     ) -> int | dict[str, Any]:
-        """Return the violation of the line between two configurations; the robot is moved along it.
+        """Test the line between two configurations, and return the first violation; the robot is moved along it.
 
         Args:
-            q0: Its start.
-            q1: Its end.
+            q0: Start of the line.
+            q1: End of the line.
             dq0: Velocities at the start; not used.
             dq1: Velocities at the end; not used.
             timeelapsed: Duration of the motion [s].
@@ -187,7 +187,8 @@ def JitterCurrentConfiguration(
         plannerparameters: The planning problem.
         maxiterations: Maximum number of configurations.
         jitter: Maximum change of each value [rad or m].
-        perturbation: Clearance: perturbation of each value that must not collide [rad or m].
+        perturbation: Clearance: the configuration has to be free also with all values increased, and all decreased, by
+            this [rad or m].
 
     Returns:
         Whether a free configuration was found. If the present configuration is free, nothing moves.
@@ -222,7 +223,7 @@ def JitterActiveDOF(
         robot: The robot.
         maxiterations: Maximum number of configurations.
         maxjitter: Maximum change of each value [rad or m].
-        perturbation: Clearance: perturbation of each value that must not collide [rad or m].
+        perturbation: Clearance, as for ``JitterCurrentConfiguration`` [rad or m].
 
     Returns:
         0 if the robot need not move, 1 if it moved, -1 if no configuration was found.

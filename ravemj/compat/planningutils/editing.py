@@ -33,7 +33,8 @@ def ReverseTrajectory(traj: Trajectory) -> Trajectory:
     """Return the reversed trajectory.
 
     The times between waypoints are kept, and velocities change their sign. Velocities with the interpolation ``next``
-    move to the other end of their segment. All other groups are those of the waypoint, as in OpenRAVE.
+    hold in the segment before their waypoint, and move to the waypoint at its other end. All other values stay at their
+    waypoints, as in OpenRAVE.
 
     Example:
         >>> back = planningutils.ReverseTrajectory(traj)

@@ -38,8 +38,8 @@ def RetimeActiveDOFTrajectory(
         hastimestamps: Whether to keep existing times if the limits allow.
         maxvelmult: Factor of the velocity limits.
         maxaccelmult: Factor of the acceleration limits.
-        plannername: The retimer, ``ParabolicTrajectoryRetimer`` for instance; empty for this one if the trajectory is
-            quadratic, else for ``LinearTrajectoryRetimer``.
+        plannername: The retimer; empty selects ``ParabolicTrajectoryRetimer`` if the interpolation is quadratic, else
+            ``LinearTrajectoryRetimer``.
         plannerparameters: Its parameters as XML text.
 
     Returns:

@@ -152,4 +152,4 @@ NAMES: dict[str, dict[str, object]] = {
     "xml": {},
     "xml.etree": {"cElementTree": "xml.etree.ElementTree"},
 }
-"""Missing names of existing modules, and all names of missing modules; a string is the new location of a value."""
+"""Values of Python 2 names that Python 3 lacks, by module and name; a string is the value's location in Python 3."""

@@ -25,7 +25,7 @@ class ModuleView(ModuleType):
 
     Args:
         module: The module; attributes set on the view are set on it.
-        names: The Python 2 names; a string is the new location of a value.
+        names: The values of the Python 2 names; a string is the location of a value in Python 3.
     """
 
     def __init__(self, module: ModuleType, names: Mapping[str, object]) -> None:

@@ -219,7 +219,7 @@ class Description(Contents):
             The added, the changed and the removed bodies.
 
         Raises:
-            openrave_exception: a description does not make a body.
+            openrave_exception: the description of a body is invalid.
         """
         checked_kind(info, EnvironmentBaseInfo, "UpdateFromInfo: info")
         added: list[KinBody] = []

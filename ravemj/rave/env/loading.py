@@ -116,9 +116,9 @@ class Loading(Description):
                 the names of its parts, ``skipgeometry`` "1" leaves out its shapes, ``scalegeometry`` ("2" or "2 3 4")
                 multiplies its lengths, except the sizes of boxes, spheres and cylinders of XML. Attributes apply to
                 files of one robot, kinbody or mesh, and to COLLADA files, but not to an ``<Environment>``. With a URDF,
-                ``srdf`` names its SRDF ("none": neither the one beside it nor guessed manipulators), ``state`` a group
-                state of it, which gives the joint values, ``packages`` folders of packages ("NAME=FOLDER", several
-                separated as in PATH), and ``args`` arguments of a xacro ("name:=value", separated by blanks).
+                ``srdf`` names its SRDF ("none" ignores the one beside it, and guesses no manipulators), ``state`` a
+                group state of it, which gives the joint values, ``packages`` folders of packages ("NAME=FOLDER",
+                several separated as in PATH), and ``args`` arguments of a xacro ("name:=value", separated by blanks).
                 Attributes that have no effect are reported as warnings.
 
         Returns:

@@ -167,7 +167,7 @@ _SKIPS: dict[str, _Given] = {
 
 
 SaveArguments = str | Mapping[str, str] | Sequence[tuple[str, str]]
-"""Argument ``atts`` of ``Save``: the name of a body, or strings by name; in pairs a name may be repeated."""
+"""Argument ``atts`` of ``Save``: the name of a body, or options by name; as pairs, an option may be repeated."""
 
 _WITH_SENSORS = (SelectionOptions.Everything, SelectionOptions.AllExceptBody)
 """Options with which ``Save`` also saves sensors that are not attached to robots."""

@@ -115,11 +115,11 @@ class GraphHandle(Handle):
         super().__init__(drawings.remove, key)
 
     def SetTransform(self, transform: ArrayLike) -> None:
-        """Set the pose of the drawing.
+        """Set the pose of the drawing relative to the original one.
 
         Args:
-            transform: ``T_world_drawing``, relative to the original drawing: 4x4, 3x4, or a pose [w, x, y, z, tx, ty,
-                tz].
+            transform: The rigid transform, in the world, of the points as they were first drawn: 4x4, 3x4, or a pose
+                [w, x, y, z, tx, ty, tz]; the identity restores them.
 
         Raises:
             ArgumentError: the transform is not rigid.

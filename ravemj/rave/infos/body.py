@@ -386,7 +386,7 @@ def body_of(info: KinBodyInfo, like: scene.KinBody) -> scene.KinBody:
 
     Raises:
         RavemjError: a list of the info contains an object of another class, two links share a name, or the links and
-            joints do not make a body.
+            joints form no valid body.
     """
     from ravemj.model.builder import BodyBuilder, SensorBuilder  # noqa: PLC0415 - slow to import
 

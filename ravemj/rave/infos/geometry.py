@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 
 VECTORS = ("_vGeomData", "_vGeomData2", "_vGeomData3", "_vGeomData4")
-"""Fields of ``GeometryInfo`` for the sizes of a shape: one per vector size; the first one has all scalar sizes."""
+"""Fields of ``GeometryInfo`` with the sizes of a shape: one for each vector; all scalars are in the first one."""
 
 
 class SideWallType(NamedInt):

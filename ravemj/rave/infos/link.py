@@ -132,7 +132,7 @@ def geometries_of(infos: Sequence[GeometryInfo], *, visible: bool = True) -> tup
         visible: False hides them, as a hidden link does.
 
     Raises:
-        ArgumentError: an object is not a ``GeometryInfo``, or its fields do not make a geometry.
+        ArgumentError: an object is not a ``GeometryInfo``, or its fields are invalid.
     """
     geometries: list[scene.Geometry] = []
     for info in infos:

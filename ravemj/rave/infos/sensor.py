@@ -114,7 +114,7 @@ class LaserGeomData(SensorGeometry):
     """Field of view and range of a laser scanner.
 
     Attributes:
-        min_angle: The first angle of a scan [rad], about the first and the second axis.
+        min_angle: The first angle of a scan [rad], and optionally one about a second axis, which is not used.
         max_angle: The last angle of a scan [rad], likewise.
         min_range: The minimum measured distance [m].
         max_range: The maximum measured distance [m].

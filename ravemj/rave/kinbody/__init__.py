@@ -214,7 +214,7 @@ class KinBody(BodyConfiguration, Interface):
             True.
 
         Raises:
-            TypeError: one of ``linkstoignore`` and ``grabbedUserData`` is given without the other (gap-20).
+            TypeError: one of ``linkstoignore`` and ``grabbedUserData`` is given without the other.
             openrave_exception: this body is not in the environment (``NotInitialized``); the other one is None
                 (``Failed``), of another environment, this body itself, or has grabbed this body (``InvalidArguments``).
         """
@@ -445,7 +445,7 @@ class KinBody(BodyConfiguration, Interface):
         return self._self_checker
 
     def active_dofs(self) -> tuple[int, ...]:
-        """Return the DOF indices of the active joints: chosen in a robot, all in any other body."""
+        """Return the DOF indices of the active joints of a robot; for any other body, all DOFs."""
         return tuple(range(self.GetDOF()))
 
     def moves_as_a_whole(self) -> bool:
@@ -608,8 +608,7 @@ class KinBody(BodyConfiguration, Interface):
             linkgeometries: The descriptions of the geometries of each link, in the order of ``GetLinks()``.
 
         Raises:
-            openrave_exception: the number of lists differs from the number of links, or a description does not make a
-                geometry.
+            openrave_exception: the number of lists differs from the number of links, or a description is invalid.
         """
         links = self.GetLinks()
         if len(linkgeometries) != len(links):

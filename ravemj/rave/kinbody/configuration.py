@@ -437,7 +437,7 @@ class BodyConfiguration(BodyPart):
         """Return the Jacobian of the body's centre of mass.
 
         Returns:
-            The derivative of ``GetCenterOfMass()`` by the DOF values, in world axes, shape (3, dof).
+            The derivative of ``GetCenterOfMass()`` with respect to the DOF values, in world axes, shape (3, dof).
         """
         with self._simulation.lock:
             return self._state.dynamics.com_jacobian()
@@ -454,7 +454,7 @@ class BodyConfiguration(BodyPart):
                 gives a column of zeros.
 
         Returns:
-            The derivative of the point's position by the DOF values, in world axes, shape (3, dof).
+            The derivative of the point's position with respect to the DOF values, in world axes, shape (3, dof).
 
         Raises:
             ArgumentError: there is no such link, or the point is not three finite numbers.
@@ -482,7 +482,7 @@ class BodyConfiguration(BodyPart):
             indices: The DOF indices of the columns, as in ``ComputeJacobianTranslation``.
 
         Returns:
-            The derivative of the angular velocity by the DOF velocities, in world axes, shape (3, dof).
+            The derivative of the angular velocity with respect to the DOF velocities, in world axes, shape (3, dof).
         """
         link = self._checked_link(linkindex)
         with self._simulation.lock:
@@ -548,7 +548,7 @@ class BodyConfiguration(BodyPart):
             quat: The quaternion [w, x, y, z]: the orientation of the link, or of anything fixed to it.
 
         Returns:
-            The derivative of the quaternion by the DOF values, shape (4, dof).
+            The derivative of the quaternion with respect to the DOF values, shape (4, dof).
         """
         rates = wxyz_jacobian(checked_vector(quat, 4, "quat").tolist())
         return rates.dot(self.ComputeJacobianAxisAngle(linkindex))  # faster than @ for small matrices
@@ -564,8 +564,8 @@ class BodyConfiguration(BodyPart):
             indices: The DOF indices, as in ``ComputeJacobianTranslation``.
 
         Returns:
-            Shape (dof, 3, dof): ``[i, :, j]`` is the second derivative by DOFs i and j. Contracted twice with the joint
-            velocities, it is the velocity-dependent part of the point's acceleration.
+            Shape (dof, 3, dof): ``[i, :, j]`` is the second derivative with respect to DOFs i and j. Contracted twice
+            with the joint velocities, it is the velocity-dependent part of the point's acceleration.
         """
         return _both_columns(self._hessian(linkindex, position)[0], indices)
 
@@ -577,9 +577,9 @@ class BodyConfiguration(BodyPart):
             indices: The DOF indices, as in ``ComputeJacobianTranslation``.
 
         Returns:
-            Shape (dof, 3, dof): ``[i, :, j]`` is the derivative of the Jacobian's column j by DOF i plus that of
-            column i by DOF j. Contracted twice with the joint velocities, it is twice the velocity-dependent part of
-            the angular acceleration.
+            Shape (dof, 3, dof): ``[i, :, j]`` is the derivative of the Jacobian's column j with respect to DOF i, plus
+            that of column i with respect to DOF j. Contracted twice with the joint velocities, it is twice the
+            velocity-dependent part of the angular acceleration.
         """
         derivatives = self._hessian(linkindex, np.zeros(3))[1]
         return _both_columns(derivatives + derivatives.transpose(2, 1, 0), indices)
@@ -594,8 +594,8 @@ class BodyConfiguration(BodyPart):
     ) -> Floats:
         """Return the accelerations of the links for the current values and velocities, without gravity.
 
-        A root link keeps its angular velocity, and its origin accelerates by ``w x v``. OpenRAVE's accelerations of
-        mimic joints are wrong; ravemj's are correct.
+        A root link has no angular acceleration; its origin has the acceleration ``w x v``, the cross product of its
+        angular and linear velocities. OpenRAVE's accelerations of mimic joints are wrong; ravemj's are correct.
 
         Args:
             dofaccelerations: Accelerations of the DOFs [rad/s^2; m/s^2 for sliders], shape (dof,); further numbers are
@@ -793,8 +793,9 @@ class BodyConfiguration(BodyPart):
             itself_too: Whether to test self-collisions.
 
         Returns:
-            Whether the body collides, shape (n,). Afterwards the configuration of the body is restored. Options, groups
-            and callbacks of collision checkers have no effect, here and in the other ``batch_`` methods.
+            Whether the body collides, shape (n,). Afterwards the configuration of the body is restored. Options,
+            geometry groups and callbacks of collision checkers have no effect, here and in the other ``batch_``
+            methods.
 
         Example:
             >>> lower, upper = robot.GetDOFLimits()

@@ -549,7 +549,10 @@ class BodyPart(ApiObject):
     GetXMLFilename = GetURI
 
     def GetReferenceURI(self) -> str:
-        """Return an empty string: the file that the body refers to in OpenRAVE's JSON, which ravemj does not read."""
+        """Return an empty string.
+
+        In OpenRAVE this is the file that the body refers to in JSON; ravemj does not read such references.
+        """
         return ""
 
     def GetAssociatedFileEntries(self) -> None:
@@ -654,8 +657,7 @@ class BodyPart(ApiObject):
             True.
 
         Raises:
-            openrave_exception: the body is in an environment, or a description does not make a geometry. The body
-                stays as it is.
+            openrave_exception: the body is in an environment, or a description is invalid. The body stays as it is.
         """
         return self._become(geometries_of(geometries), uri)
 
@@ -671,8 +673,7 @@ class BodyPart(ApiObject):
             True.
 
         Raises:
-            openrave_exception: the body is in an environment, or the descriptions do not make a body. The body stays
-                as it is.
+            openrave_exception: the body is in an environment, or the descriptions are invalid. The body stays as it is.
         """
         return self.InitFromKinBodyInfo(KinBodyInfo(_vLinkInfos=linkinfos, _vJointInfos=jointinfos, _uri=uri))
 
@@ -710,8 +711,7 @@ class BodyPart(ApiObject):
             True.
 
         Raises:
-            openrave_exception: the body is in an environment, or the description does not make a body. The body stays
-                as it is.
+            openrave_exception: the body is in an environment, or the description is invalid. The body stays as it is.
 
         Example:
             >>> copy = ravemj.RaveCreateKinBody(env, "")

@@ -107,7 +107,7 @@ class Manipulator(ArmIk):
         """Return the Jacobian of the tool's position.
 
         Returns:
-            The derivative of the tool's position in the world by the joint values of ``GetArmIndices()``,
+            The derivative of the tool's position in the world with respect to the joint values of ``GetArmIndices()``,
             [m/rad or m/m], shape (3, arm dof).
         """
         with self._state.simulation.lock:

@@ -65,7 +65,7 @@ def RaveCreateModule(env: "Environment", name: str) -> Module | None:
         env: The environment.
         name: ``BaseManipulation``, ``TaskManipulation``, ``Grasper``, ``viewerrecorder``, which writes videos,
             ``logging``, which saves scenes, ``urdf``, which loads robots of ROS as the plugin or_urdf does, or
-            ``ikfast``, which gives arms their solvers; in any letter case.
+            ``ikfast``, which assigns IK solvers to arms; in any letter case.
 
     Returns:
         The module; None with a logged warning if no plugin of OpenRAVE has a module of that name.

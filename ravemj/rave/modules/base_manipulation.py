@@ -111,7 +111,7 @@ class Manipulation:
         return body_groups(self.robot.simulation_state.scene.name, dofs, 0, "")
 
     def bodies_of(self, dofs: Sequence[int]) -> Bodies:
-        """Return some joints of the robot as the moving bodies of a problem."""
+        """Return the moving bodies of a planning problem for some joints of the robot."""
         return Bodies(self.env.simulation, self.groups(dofs), self.env.GetCollisionChecker)
 
     def stated(self, dofs: Sequence[int] | None = None) -> Values:

@@ -465,7 +465,7 @@ GRASP_COLUMNS = (
     *("igrasptrans", "grasptrans_nocol", "igraspdir", "imanipulatordirection", "igrasppreshape"),
     *("igrasppos", "igrasproll", "igraspstandoff", "ichuckingdirection"),
 )
-"""Column names of a grasp table; the last four are for rows without a pose, which are simulated."""
+"""Column names of a grasp table; the last four are only for rows without a tool pose, whose grasps are simulated."""
 
 _GRASPS: Mapping[str, Reader] = {
     **dict.fromkeys(GRASP_COLUMNS, Tokens.integer),

@@ -90,7 +90,7 @@ class Candidates:
     """Grasp candidates: all combinations of rays, rolls, preshapes, standoffs and directions.
 
     Attributes:
-        rays: Start of the tool and direction of the motion, in the target, shape (n, 6).
+        rays: Start of the tool and direction of the motion, in the frame of the target, shape (n, 6).
         rolls: Rotations of the tool [rad].
         preshapes: Values of the gripper [rad or m], shape (n, gripper dof).
         standoffs: Distances by which the hand moves back after the contact [m].
@@ -174,7 +174,8 @@ class GraspSimulation(Manipulation):
             candidates: The candidates.
             request: Approach of the hand, and quantities to compute.
             sweep: Range of candidates, and criteria for grasps.
-            processes: Number of processes; few candidates are simulated in this one. The grasps are the same.
+            processes: Number of processes, which does not change the grasps. A few candidates are simulated in the
+                calling process.
 
         Returns:
             The index of the next candidate, and the grasps in the order of their indices.
@@ -243,7 +244,7 @@ class GraspSimulation(Manipulation):
         """Return the present contacts of the hand at which closing the fingers presses against other bodies.
 
         Args:
-            direction: Velocity of links that no gripper joint moves, shape (3,).
+            direction: Assumed velocity of contacts that closing does not move, such as those of a palm, shape (3,).
             friction: Friction coefficient, more than 0.
 
         Returns:

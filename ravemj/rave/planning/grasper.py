@@ -191,11 +191,12 @@ def motion_of(robot: Robot, dofs: Sequence[int], path: Sequence[Waypoint]) -> Wa
 class Grasper(Planner):
     """``Grasper``: the hand of a robot moves to a target, and its fingers close one by one.
 
-    The problem is that of ``SetRobotActiveJoints``; ``SetInitialConfig`` has the preshape, and ``SetGoalConfig`` the
-    sign of the motion of each joint. ``SetExtraParameters`` has OpenRAVE's ``GraspParameters`` as elements:
+    ``SetRobotActiveJoints`` selects the joints, ``SetInitialConfig`` sets the preshape, and ``SetGoalConfig`` the sign
+    of the motion of each joint. ``SetExtraParameters`` takes OpenRAVE's ``GraspParameters`` as elements:
     ``<targetbody>`` with the name or the index of the body in the environment, ``<vtargetdirection>``, ``<fstandoff>``
-    and so on. The trajectory has the last configuration; with ``<breturntrajectory>1</breturntrajectory>`` the start,
-    the contact and the end of each finger. Contacts are found by bisection, so there are no more waypoints.
+    and so on. The trajectory has only the last configuration; with ``<breturntrajectory>1</breturntrajectory>`` it has
+    the start, the contact of the hand, and the end of each finger's motion, without waypoints between these, since
+    contacts are found by bisection.
     """
 
     _defaults: ClassVar[Mapping[str, str]] = {

@@ -35,9 +35,9 @@ class WorkspaceTrajectoryTracker(Planner):
     """``WorkspaceTrajectoryTracker``: the hand follows a given trajectory without jumps of the joints.
 
     The trajectory is sampled in steps of ``_fsteplength`` [s]; each sample is a goal of inverse kinematics. The motion
-    begins in the current configuration of the robot if that reaches the first goal and has a continuation, else in
-    another solution. A smoother would leave the given trajectory, so ``LinearTrajectoryRetimer`` retimes the result,
-    unless the parameters name another planner.
+    begins in the current configuration of the robot if this reaches the first goal and the motion can continue from it,
+    else in another solution. A smoother would leave the given trajectory, so ``LinearTrajectoryRetimer`` retimes the
+    result, unless the parameters name another planner.
     """
 
     _defaults: ClassVar[Mapping[str, str]] = {

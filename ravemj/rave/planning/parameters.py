@@ -83,7 +83,7 @@ class PlannerParameters(ApiObject):
 
     @classmethod
     def of(cls, values: Values, defaults: Mapping[str, str]) -> "PlannerParameters":
-        """Return parameters with values, and with default texts for missing tags."""
+        """Return parameters with given values, and with default texts for missing planner-specific parameters."""
         params = cls()
         params.given = values.copied()
         params._extra = "\n".join(f"<{name}>{text}</{name}>" for name, text in {**defaults, **values.tags}.items())
@@ -225,9 +225,9 @@ class PlannerParameters(ApiObject):
     ) -> None:
         """Add a constraint on the configurations along the whole path.
 
-        All constraints must hold. Planners project configurations onto regions, and the motion then passes many
-        configurations in them without stops; with other constraints they only reject configurations. OMPL's planners do
-        not support regions.
+        All constraints must hold. Planners project configurations onto regions, and the motion then passes through many
+        configurations in the regions without stopping; with other constraints they only reject configurations. OMPL's
+        planners do not support regions.
 
         Args:
             constraint: A ``Region`` for the tool; a function of a configuration, shape (dof,), that returns whether it
@@ -261,16 +261,16 @@ class PlannerParameters(ApiObject):
     def set_goal_sampler(self, sample: RootSets, probability: float = 0.1, *, holding: KinBody | None = None) -> None:
         """Set regions or a function as a source of goals, in addition to those of ``SetGoalConfig``.
 
-        All planners sample some configurations of the regions before planning; ``birrt`` also samples during planning,
-        from all IK branches of random poses with their nearest turns. The problem must move the arm joints of the
-        active manipulator, and its gripper joints if regions have a ``preshape``.
+        All planners sample some configurations of the regions before planning; ``birrt`` also samples during planning:
+        all IK solutions of random poses in the regions. The problem must move the arm joints of the active manipulator,
+        and its gripper joints if regions have a ``preshape``.
 
         Args:
             sample: One or more regions, one of which the tool must reach; or a function that returns a goal of shape
                 (dof,), or None if it has no goal at this time. Goals in collision are rejected. None removes the
                 sampler.
             probability: Probability of sampling a goal in an iteration; 1 until there is a goal.
-            holding: A body grabbed by the tool, which must reach the regions instead of the tool.
+            holding: A body grabbed by the tool; this body, not the tool, must reach the regions.
 
         Raises:
             ArgumentError: the list is empty, a length of a region has no bounds, or other joints move.
@@ -286,7 +286,7 @@ class PlannerParameters(ApiObject):
         Args:
             sample: As for ``set_goal_sampler``.
             probability: Probability of sampling a start in an iteration.
-            holding: A body grabbed by the tool, which starts in the regions instead of the tool.
+            holding: A body grabbed by the tool; this body, not the tool, starts in the regions.
         """
         self.given.start_sampler = self._sampler(sample, probability, holding, "set_start_sampler: sample")
 

@@ -31,7 +31,7 @@ _SPACING = 10
 
 
 _STRICT_ITERATIONS, _STRICT_EFFORT = 50, 4
-"""Iteration limit if each edge has to be certified: the minimum, and the factor on the first search's iterations."""
+"""Iteration limit of a search that certifies each edge: the minimum, and the factor on those of the first search."""
 
 
 class PathPlanner(Planner):

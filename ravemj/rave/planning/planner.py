@@ -38,7 +38,8 @@ class PlannerStatus(ApiObject):
         jointValues: The configuration that caused the failure; empty if none did.
         ikparam: The goal of inverse kinematics that caused the failure, or None.
         report: The collision that caused the failure, or None.
-        start_index: The index of the start of the motion; regions are counted after configurations; -1 if unknown.
+        start_index: The index of the start of the motion: configurations are counted first, then regions; -1 if
+            unknown.
         goal_index: The index of the goal, likewise.
     """
 
@@ -77,7 +78,7 @@ class PlannerStatus(ApiObject):
 
     @property
     def causes(self) -> dict[str, int]:
-        """Number of poses sampled from goal regions by cause of failure.
+        """Number of poses sampled from goal regions, for each cause of failure.
 
         Poses that gave goals are counted as ``reached``, so that the numbers add up to the number of poses.
         """

@@ -51,7 +51,10 @@ CHAIN = (
 """Default post-processing of paths: the first planner, and its parameters, which name the second."""
 
 CERTIFIED_CHAIN = "parabolicsmoother", _SECOND
-"""Default post-processing of certified motions: without ``linearsmoother``, since its shortcuts are not undone."""
+"""Default post-processing of certified motions.
+
+It lacks ``linearsmoother``, whose shortcuts cannot be removed again if they cannot be certified.
+"""
 
 _SAME = 1e-9
 """Tolerance of equal configuration values [rad or m]."""
@@ -170,8 +173,8 @@ class Values:
     """Values of a planning problem, and the bodies that they refer to.
 
     Attributes:
-        vectors: Vectors, by the names of ``parameter_text.VECTORS``.
-        numbers: Scalars, by the names of ``parameter_text.NUMBERS``.
+        vectors: Vectors, by the names of ``VECTORS``.
+        numbers: Scalars, by the names of ``NUMBERS``.
         groups: The layout of a configuration.
         weights: The weight of each value in distances, shape (n,).
         postprocessing: The name of the post-processing planner, and its parameters as text.
@@ -288,7 +291,7 @@ class Values:
                 raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be {dof} numbers")
 
     def index_of(self, side: int, end: Floats) -> int:
-        """Return the index of a start (side 0) or goal (1); regions are counted after configurations."""
+        """Return the index of a start (side 0) or goal (1): configurations are counted first, then regions."""
         given = self.configurations("_vgoalconfig" if side else "_vinitialconfig")
         for number, configuration in enumerate(given):
             if np.abs(configuration - end).max() <= _SAME:

@@ -184,8 +184,8 @@ class Robot(ActiveDofs):
                 not possible, the motion stops at each waypoint.
             rate: Points per second [Hz], and one at the end; None: a point at each waypoint, with the derivatives
                 that determine the motion between them.
-            moving: Allows motion at the start and the end; straight lines then keep their times and have no
-                velocities.
+            moving: Whether the motion may start and end with nonzero velocity. A motion with linear interpolation then
+                keeps its times, and its points have no velocities.
             start: The measured joint values, shape (dof,) [rad or m]: the first point has to be within 0.01 of them.
                 Continuous joints are shifted by whole turns to them.
 
@@ -332,8 +332,8 @@ class Robot(ActiveDofs):
             True.
 
         Raises:
-            openrave_exception: the robot is in an environment, or the descriptions do not make a robot; the robot stays
-                as it is.
+            openrave_exception: the robot is in an environment, or the descriptions are invalid; the robot stays as it
+                is.
         """
         del uri
         info = RobotBaseInfo(

@@ -104,7 +104,7 @@ def default_kinds() -> dict[str, AffineKind]:
 
 
 def with_affine_settings(topic: type[Topic]) -> type[Topic]:
-    """Class decorator that adds bodies and docstrings to affine DOF methods, which are signatures only."""
+    """Class decorator that adds function bodies and docstrings to affine DOF methods, which are signatures only."""
     for kind, about in _KINDS.items():
         for setting, (fields, what) in _SETTINGS.items():
             if (kind, setting) == ("RotationQuat", "Limits"):  # a quaternion times the maximum angle, not two limits
@@ -322,7 +322,10 @@ class ActiveDofs(KinBody):
         return self._with_affine(self.GetDOFVelocityLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFMaxAccel(self) -> Floats:
-        """Return the acceleration limits of the active values, shape (n,); for the base, the velocity limits."""
+        """Return the acceleration limits of the active values, shape (n,).
+
+        As in OpenRAVE, the numbers of the base are its velocity limits.
+        """
         return self._with_affine(self.GetDOFAccelerationLimits(self._active_dofs()), "max_velocity")
 
     def GetActiveDOFMaxJerk(self) -> Floats:
