@@ -20,7 +20,7 @@ ROOT = -1
 
 @dataclass(slots=True)
 class Step:
-    """Step of a chain: a root link, a joint axis (z of the step's frame), or a spherical joint in its parent's axes."""
+    """Element of a chain: root link, joint axis (z of the element's frame), or spherical joint (in parent's axes)."""
 
     kind: str  # ``root``, ``hinge``, ``slider`` or ``spherical``
     parent: int  # the parent step
@@ -37,8 +37,8 @@ class LinkChain:
     """Links of a body in topological order.
 
     Attributes:
-        steps: The steps that move the links.
-        T_step_links: Pose of each link in the frame of the step that it is fixed to, shape (links, 4, 4).
+        steps: The chain elements (roots and joint axes) that move the links.
+        T_step_links: Pose of each link in the frame of the chain element that it is fixed to, shape (links, 4, 4).
     """
 
     def __init__(self, kinematics: BodyKinematics, tree: CoordinateTree) -> None:
