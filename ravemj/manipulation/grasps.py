@@ -134,7 +134,7 @@ class Grasp:
     Attributes:
         number: Its index in the table.
         preshape: Joint values of the gripper [rad or m].
-        rows: Solutions: arm values at the start of the approach, a straight line of the tool to the grasp.
+        rows: Alternative joint values of the arm at the start of the approach, on which the tool moves straight.
         T_world_goals: Poses of the tool at the destinations of the target.
     """
 
