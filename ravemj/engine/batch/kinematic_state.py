@@ -3,7 +3,7 @@
 Arrays have a first axis for the links or velocity coordinates, then one for components, then one for configurations.
 Motions are six numbers in world axes: the angular velocity, and the velocity of the body's point that passes through a
 fixed reference point. Accelerations are their time derivatives. Forces are their duals: moment about the reference
-point, and force. The roots rest.
+point, and force. The root links are at rest.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Collision world: owners of geoms, and cached geom pairs of queries."""
+"""Collision world: the body and link of each geom, and cached geom pairs of queries."""
 
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
