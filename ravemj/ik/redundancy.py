@@ -86,7 +86,7 @@ def free_range(chain: Chain, joint: int) -> tuple[float, float]:
 
 
 def affordable(chain: Chain, free: Sequence[int], steps: Sequence[float]) -> tuple[float, ...]:
-    """Return steps of free joints, enlarged if several would have more than ``MOST`` samples."""
+    """Return steps of free joints, enlarged if several joints together would have more than ``MOST`` samples."""
     if len(free) < 2:
         return tuple(steps)
     ranges = [high - low for low, high in (free_range(chain, joint) for joint in free)]

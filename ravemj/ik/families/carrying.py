@@ -99,7 +99,7 @@ class CarryPoint:
 class CarryPlane:
     """Three joints that carry a plane to a plane: the remaining joints of an arm with three parallel axes.
 
-    With a prismatic joint among the three, the other two turn the normal, and the distance follows.
+    If one of the three is prismatic, the other two rotate the normal, and the prismatic one corrects the offset.
     """
 
     def __init__(self, screws: Screws, start: Plane, goal: Plane) -> None:
