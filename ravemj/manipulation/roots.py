@@ -88,7 +88,7 @@ class PoseSolutions(NamedTuple):
     """IK solutions of a pose.
 
     Attributes:
-        rows: The solutions within the limits, the nearest turns of each IK branch first, shape (K, n).
+        rows: The solutions within the limits, shape (K, n). Those that differ by full turns from better ones come last.
         cause: The cause of rejection if there is no solution.
     """
 
