@@ -74,7 +74,7 @@ class MotionRows(NamedTuple):
 
 
 class Guard(NamedTuple):
-    """Stop conditions: the feedback, its largest distance from the motion [rad or m], and its largest age [s]."""
+    """Stop conditions: feedback function, maximum distance from the motion [rad or m], maximum age of a state [s]."""
 
     feedback: Feedback | None = None
     tolerance: float = math.inf
