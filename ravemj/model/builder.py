@@ -134,7 +134,7 @@ class BodyBuilder:
         )
 
     def set_parts(self, parts: "BodyParts") -> None:
-        """Restore earlier parts."""
+        """Restore parts that ``parts`` returned earlier."""
         self.forget_names()
         self.name, self.links, self.joints, self.adjacent, self.manipulators, self.sensors = parts
 
