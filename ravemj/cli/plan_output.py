@@ -84,7 +84,10 @@ def check_output(path: str) -> None:
 
 
 def write(plan: Plan, camera: Camera | None, options: argparse.Namespace) -> None:
-    """Write a motion, its video or picture; if there is none, a page of the reasons or a picture of the trees."""
+    """Write a motion as file, video or picture.
+
+    If there is no motion, write a page with the reasons, or a picture of the search trees.
+    """
     robot, path = plan.robot, options.output
     suffix = Path(path).suffix.lower()
     notes = [] if plan.certificate is None else [str(plan.certificate), f"scene {_fingerprint(robot.GetEnv())}"]

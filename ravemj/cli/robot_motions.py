@@ -83,10 +83,10 @@ def motion_file(env: Environment, options: argparse.Namespace) -> MotionFile:
 
 
 def export(env: Environment, motion: MotionFile, options: argparse.Namespace) -> None:
-    """Write a motion for a robot controller; of a table, only the joints that it names.
+    """Write a motion for a robot controller. If it is a table, only the joints that it names are written.
 
     Raises:
-        ArgumentError: it fails a check.
+        ArgumentError: the motion fails a check.
     """
     if options.duration is not None:
         raise ArgumentError("--duration: goes with pictures; --acceleration makes a motion for a robot slower")

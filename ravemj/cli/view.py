@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from ravemj.gui.viewers.web import WebViewer
 
 Worker: TypeAlias = "Callable[[WindowViewer | WebViewer], Callable[[], None]]"
-"""Function that returns, for a viewer, the function to be called periodically while it is open."""
+"""Function of a viewer that returns another function, which is called periodically while the viewer is open."""
 
 _LOOK = 0.1
 """Period of checks for changed files [s]."""

@@ -21,8 +21,8 @@ class _ApiType(type):
 class ApiObject(metaclass=_ApiType):
     """Base class with a ``repr`` without an address, and a ``dir`` of the names that users call.
 
-    ``dir`` and tab completion omit names with an underscore, and those in ``_internal``, which are for other modules of
-    this package: they have no underscore, since other modules may not call private names.
+    ``dir`` and tab completion omit names with an underscore, and those listed in ``_internal``: names that other
+    modules of this package use, and that therefore have no underscore.
     """
 
     _internal: ClassVar[tuple[str, ...]] = ()

@@ -73,8 +73,8 @@ _KINDS: Mapping[str, tuple[str, Callable[[object], bool]]] = MappingProxyType(
 def explained(function: FunctionType) -> Callable[..., Any]:
     """Wrap a function so that an error of Python caused by a wrong argument type becomes a ``TypeError`` that names it.
 
-    OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31). It takes numpy's arrays without dimensions for
-    numbers, so a call with such arrays that fails is repeated with their numbers.
+    OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31). Like OpenRAVE, it accepts numpy's 0-dimensional
+    arrays as numbers: if a call with such arrays fails, it is repeated with their numbers.
     """
     if hasattr(function, _MARK):
         return function

@@ -177,8 +177,8 @@ class ShortestPaths:
 def nodes_between(edges: Iterable[Pair], count: int, start: int, end: int) -> set[int]:
     """Return the nodes on paths between two nodes that visit no node twice; none if the two are equal.
 
-    An edge lies on such a path if both of its nodes do. These nodes are in one block (biconnected component) with an
-    additional edge from the start to the end.
+    An edge lies on such a path if both of its nodes do. With an additional edge from the start to the end, these nodes
+    form a block (biconnected component).
     """
     neighbours: list[list[int]] = [[] for _ in range(count)]
     for first, second in edges:

@@ -143,14 +143,14 @@ def _one_thread() -> Generator[None]:
 def map_parts(
     function: Callable[[bytes, _Part], _Result], content: bytes, parts: Sequence[_Part], count: int
 ) -> Generator[_Result]:
-    """Yield the results of a function for each part of some work, in the order of the parts, from several processes.
+    """Call a function for each part of a computation in several processes; yield the results in the order of the parts.
 
     Ctrl-C, or closing the generator, kills the processes.
 
     Args:
         function: A function of a module, called with ``content`` and a part.
         content: Pickled data that all parts need.
-        parts: The parts.
+        parts: The arguments of the calls.
         count: Number of processes.
 
     Raises:

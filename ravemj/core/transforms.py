@@ -203,7 +203,7 @@ def rows_from_wxyz(wxyz: Wxyz) -> Rows:
 
 
 def wxyz_jacobian(wxyz: Sequence[float]) -> Floats:
-    """Return the derivative of a quaternion by the angular velocity in the outer axes, shape (4, 3)."""
+    """Return the Jacobian from angular velocity in the outer axes to the quaternion's rate, shape (4, 3)."""
     w, x, y, z = wxyz
     w, x, y, z = w / 2, x / 2, y / 2, z / 2
     return np.array(((-x, -y, -z), (w, z, -y), (-z, w, x), (y, -x, w)))

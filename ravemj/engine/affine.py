@@ -24,7 +24,7 @@ class AffineMotion:
     """Motion of a base by its affine DOFs, at one pose.
 
     ``translations`` are the indices, 0 to 2, of the translational DOFs. ``angular`` is the base's angular velocity in
-    the world per rate of each rotational value, shape (3, 0, 1, 3 or 4).
+    the world per rate of each rotational value, shape (3, k); k is 0, 1, 3 or 4.
     """
 
     def __init__(self, pose: Pose, affinedofs: int, axis: Vec3) -> None:
@@ -48,7 +48,7 @@ class AffineMotion:
         return velocity
 
     def translation_jacobian(self, point: Floats) -> Floats:
-        """Return the derivative of a point fixed to the base by the affine values, shape (3, n)."""
+        """Return the derivative of a point fixed to the base with respect to the affine values, shape (3, n)."""
         split = len(self.translations)
         jacobian = np.zeros((3, split + self.angular.shape[1]))
         jacobian[self.translations, range(split)] = 1.0

@@ -35,8 +35,8 @@ POLL = 0.05
 class Clock:
     """Clock of the simulation time, with a thread that runs its steps.
 
-    Running is enabled from the start, as in OpenRAVE, but the thread starts with the first ``wake``. It has a weak
-    reference to the clock, so it ends with the clock's owner.
+    Running is enabled from the start, as in OpenRAVE, but the thread starts with the first ``wake``. The thread has a
+    weak reference to the clock, so it ends when the clock is deleted.
     """
 
     def __init__(self, lock: StateLock, step: Callable[[float], None]) -> None:

@@ -68,7 +68,8 @@ def write_folder(path: AnyPath, model: AnyPath, mjcf: Mjcf, read: Collection[str
     Arguments as for ``write``; ``scene`` is the document that puts the model on a floor.
 
     Raises:
-        OutputError: the folder cannot be written, is of another kind, or contains a file that was read.
+        OutputError: the folder cannot be written, has other content than an older translation, or contains a file that
+            was read.
     """
     name = f"{Path(model).stem}.xml"
     for file in (name, scene_file.NAME):

@@ -18,7 +18,10 @@ def grab_as_it_stands(holder: BodyState, body: BodyState, link: int, ignored: It
 
 
 def still_possible(holder: BodyState, grabs: Sequence[GrabbedBody]) -> list[GrabbedBody]:
-    """Return the grabs of a body that are still possible; in a copied world, with the copied bodies."""
+    """Return the grabs of a body that are still possible.
+
+    If ``holder`` is in a copied world, the grabbed bodies are replaced by those of the same name there.
+    """
     world = holder.simulation
     bodies = [grab.body if grab.body.simulation is world else world.body(grab.body.scene.name) for grab in grabs]
     return [

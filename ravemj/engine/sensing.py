@@ -112,7 +112,7 @@ def acceleration_at(physics: Physics, state: BodyState, link: int, point: Floats
 
 
 def encoder_values(state: BodyState, resolution: tuple[float, ...]) -> tuple[Floats, Floats, Floats]:
-    """Return the readings of a robot's joint encoders: values, velocities and steps, each of shape (dof,).
+    """Return the readings of a robot's joint encoders: values, velocities and resolutions, each of shape (dof,).
 
     Values [rad or m] are rounded to multiples of ``resolution``: one for each DOF, one for all, or none.
     """

@@ -46,8 +46,8 @@ class TranslationChoices(NamedTuple):
     """User choices of a translation to MJCF.
 
     Attributes:
-        base: Attachment of the bodies: ``fixed`` welds all to the world, ``free`` frees robots and bodies without a
-            static link, ``openrave`` only the latter.
+        base: Attachment of the bodies: ``fixed`` welds all to the world; ``openrave`` frees bodies without a static
+            link; ``free`` frees these and all robots.
         actuators: The kind of actuator of each DOF: ``position``, ``velocity``, ``torque``, or None.
         gains: File with servo gains that replace computed ones; see ``ravemj.formats.gains_file``.
         state: Named configuration to start from; None for the one called home, standing or half_sitting, else the

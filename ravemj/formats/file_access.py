@@ -55,7 +55,8 @@ class FileAccess:
         Args:
             path: Its absolute path.
             folder: The folder of the mesh file.
-            is_raw: Whether the file is raw numbers of any content.
+            is_raw: Whether the file has no format that could be checked, only raw numbers; it must be in ``folder``
+                then.
         """
         places = (folder,) if is_raw else (folder, *self._trees)
         return any(is_inside(path, place) for place in places) and self.permits(path)

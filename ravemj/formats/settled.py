@@ -29,7 +29,7 @@ def number(value: float, largest: float | None = None) -> float:
 
 
 def numbers(values: Sequence[float]) -> list[float]:
-    """Round numbers to thirteen digits of the largest of them."""
+    """Round numbers to the place of the thirteenth significant digit of the largest one."""
     largest = max(map(abs, values), default=0.0)
     return [number(value, largest) for value in values]
 

@@ -15,7 +15,7 @@ from ravemj.core.caching import cached_property
 from ravemj.ik.vectors import Bools, Floats, cross, skew
 
 Turns = Sequence[Floats] | Floats
-"""Cosines and sines, shape (2, …), or distances, (1, …), of each joint; one array if all joints are revolute."""
+"""Joint values: cosines and sines (2, …) or, if prismatic, distances (1, …); one array if all joints are revolute."""
 _IDENTITY = np.eye(3)
 _EXACT, _NEARLY = 1e-12, 1e-3
 """Maximum errors of a rotation: accepted as rounding error, and corrected to the nearest rotation."""

@@ -33,7 +33,7 @@ class FollowingChain(Chain):
         return self.inner.reach
 
     def rates(self, values: Floats) -> Floats:
-        """Return the derivatives of all joints by the variables, shape (N, n), by central differences."""
+        """Return the derivatives of all joints with respect to the variables, shape (N, n), by central differences."""
         steps = _STEP * np.eye(self.dof)
         columns = [(self.expand(values + step) - self.expand(values - step)) / (2 * _STEP) for step in steps]
         return np.array(columns).reshape(self.dof, -1).T

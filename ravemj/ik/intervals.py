@@ -31,9 +31,9 @@ _CLOSE, _VERY_CLOSE = 0.5, 0.05
 _ENOUGH = 32
 """Number of samples of the free joint below which 2 * ``_ENOUGH`` further samples are added."""
 _MOST_VALLEYS, _FIRST_VALLEYS = 6, 2
-"""Maximum number of samples with a minimum of the excess that are searched around, and how many come first."""
+"""Maximum number of minima of the excess over the samples that are searched around, and of those searched first."""
 _MOST_DESCENTS, _LAST_DESCENTS = 12, 4
-"""Maximum number of descents from minima of the excess, and then, if they fail, from the samples with the least one."""
+"""Maximum number of descents from minima of the excess and, if all fail, from other samples with the least excess."""
 _FRACTIONS = np.linspace(0, 1, 12)
 """Values of the free joint tried around a minimum of ``excess``, as fractions of the way between the neighbours."""
 _PARTS, _SECTIONS = 8, 5

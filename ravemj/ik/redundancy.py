@@ -86,7 +86,7 @@ def free_range(chain: Chain, joint: int) -> tuple[float, float]:
 
 
 def affordable(chain: Chain, free: Sequence[int], steps: Sequence[float]) -> tuple[float, ...]:
-    """Return steps of free joints, enlarged if several would have more than ``MOST`` samples."""
+    """Return steps of free joints, enlarged if several joints together would have more than ``MOST`` samples."""
     if len(free) < 2:
         return tuple(steps)
     ranges = [high - low for low, high in (free_range(chain, joint) for joint in free)]
@@ -106,7 +106,7 @@ def samples(chain: Chain, free: Sequence[int], steps: Sequence[float], start: Fl
         start: Values of the first sample, shape (k,).
 
     Returns:
-        Values, shape (K, k); one empty row if there is no free joint. The last of several joints changes first.
+        Values, shape (K, k); one empty row if there is no free joint. The last free joint varies fastest.
     """
     columns: list[list[float]] = []
     for index, (joint, step) in enumerate(zip(free, steps, strict=True)):
@@ -140,7 +140,7 @@ def singular_rows(chain: Chain, rows: Floats) -> list[tuple[Floats, int, int, fl
 def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats | None = None) -> Floats:
     """Return other configurations (K, n) with the same tool pose as a singular one, an item of ``singular_rows``.
 
-    One result has the value of the first of the two joints in ``seed``, another that of the second.
+    If ``seed`` is given, one more result has its value of the first of the two joints, another its value of the second.
     """
     row, first, second, sign = singular
     angles = np.arange(-np.pi + SINGULAR_STEP, np.pi + 1e-9, SINGULAR_STEP)

@@ -204,7 +204,10 @@ class ArmSolutions:
             yield np.vstack([row, others[self.chain.differences(others, row) > DISTINCT]])
 
     def spread(self, rows: Floats, at: Floats | None = None) -> Floats:
-        """Return solutions, with equivalent ones added if two joints of a solution rotate about one line."""
+        """Return solutions, with equivalent ones added if two joints of a solution rotate about one line.
+
+        If the configuration ``at`` is given, equivalents with its values of these joints are added, too.
+        """
         if self.task is not Task.TRANSFORM or not len(rows):
             return rows
         extra = [redundancy.spread(self.chain, row, at) for row in redundancy.singular_rows(self.chain, rows)]

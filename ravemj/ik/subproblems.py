@@ -6,7 +6,7 @@ inverse kinematics using subproblem decomposition", 2022) define six of them, wi
 functions suffice: subproblem 1 is ``turn_between``; 3 (point to sphere) and 4 (point to plane) are the linear equation
 of ``solve_linear``, 2 is 4 followed by 1; 5 and 6 are the quadratic equation of ``solve_quadratic``.
 
-If there is no solution, the result is the nearest turn, and forward kinematics detects the error.
+If there is no solution, the result is the least-squares rotation, and forward kinematics detects the error.
 """
 
 import numpy as np
@@ -14,12 +14,12 @@ import numpy as np
 from ravemj.ik.vectors import TINY, Floats, Screw, dot
 
 ON_AXIS = 2e-11
-"""Distance from an axis below which a unit vector counts as parallel to it, so that any turn is accurate."""
+"""Distance from an axis below which a unit vector counts as parallel to it: then any rotation is accurate."""
 _SHIFTS = 2 * np.pi / 5 * np.arange(5).reshape(5, 1, 1)
 
 
 def normalized(turn: Floats, least: float = TINY) -> Floats:
-    """Normalize turns (cosine, sine) to unit length; those shorter than ``least`` become the turn by 0."""
+    """Normalize (cosine, sine) to unit length; vectors shorter than ``least`` become (1, 0), the angle 0."""
     length = np.sqrt(turn[0] * turn[0] + turn[1] * turn[1])
     if length.min(initial=np.inf) < least:
         none = length < least
@@ -29,9 +29,9 @@ def normalized(turn: Floats, least: float = TINY) -> Floats:
 
 
 def turn_between(joint: Screw, start: Floats, end: Floats) -> Floats:
-    """Return cosine and sine (2, B, N) of the turn that carries ``start`` (3, B, N) nearest to ``end`` (subproblem 1).
+    """Return cosine and sine (2, B, N) of the angle that carries ``start`` (3, B, N) nearest to ``end`` (subproblem 1).
 
-    Directions are relative to the joint's point. If one is along the axis, the result is the turn by 0.
+    Directions are relative to the joint's point. If one is along the axis, the angle is 0.
     """
     _, across, later = joint.split(end)
     start = joint.across(start)  # otherwise rounding errors of directions along the axis dominate
@@ -43,7 +43,7 @@ def solve_linear(a: Floats, b: Floats, d: Floats) -> Floats:
 
     Returns:
         Cosine and sine of both solutions, shape (2, 2 B, N): the first solutions, then the second ones. Without
-            solution, both are the nearest turn.
+            solution, both are the angle with the least error.
     """
     length = np.sqrt(a * a + b * b)
     if length.min(initial=np.inf) < TINY:

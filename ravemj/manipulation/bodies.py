@@ -71,7 +71,7 @@ class Part:
 
 
 class Bodies:
-    """The bodies of a planning problem: their joints and poses, in the order of the groups of a layout.
+    """The bodies of a planning problem: joints and poses, in the order of the groups of a configuration specification.
 
     Args:
         simulation: The world that contains the bodies.
@@ -99,7 +99,7 @@ class Bodies:
         self._free: set[BodyState] = set()  # bodies whose joints do not move, and which need no self-collision checks
 
     def numbers(self, name: str) -> Floats:
-        """Return a field of ``scene.Axis`` for each joint value, (n,); 0 or no limit for other values."""
+        """Return a field of ``scene.Axis`` for each joint value, shape (n,); for poses and goals, 0 or no limit."""
         result = np.zeros(self.dof)
         for part in self.parts:
             axes = part.body.scene.dof_axes
@@ -144,10 +144,10 @@ class Bodies:
         return f"value {index} of the pose of '{scene.name}'"
 
     def near_others(self, space: Space, ends: Floats) -> Space:
-        """Return a space that restricts a base to positions near other bodies, or between starts and goals.
+        """Return a space that restricts the base position to a box around other bodies, starts and goals.
 
-        Paths elsewhere could be moved to the border of this box. With OpenRAVE's base limits of 100 m, hardly a sample
-        is near an obstacle.
+        Any path could be moved into this box without new collisions. Samples within OpenRAVE's base limits of 100 m are
+        rarely near an obstacle.
 
         Args:
             space: The configuration space.

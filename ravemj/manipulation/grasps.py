@@ -85,10 +85,10 @@ class GraspTable(NamedTuple):
         return None if numbers is None else np.vstack([numbers.reshape(4, 3).T, [0.0, 0.0, 0.0, 1.0]])
 
     def approach(self, grasp: int, tool_direction: Sequence[float]) -> Approach | None:
-        """Return the approach of a row's hand to the target; None if the row has no direction.
+        """Return the approach of the hand to the target in a grasp; None if the table has no direction for it.
 
         Args:
-            grasp: The row.
+            grasp: Index of the row in the table.
             tool_direction: The manipulator's direction, for rows without one.
         """
 
@@ -134,7 +134,7 @@ class Grasp:
     Attributes:
         number: Its index in the table.
         preshape: Joint values of the gripper [rad or m].
-        rows: Solutions: arm values at the start of the approach, a straight line of the tool to the grasp.
+        rows: Alternative joint values of the arm at the start of the approach, on which the tool moves straight.
         T_world_goals: Poses of the tool at the destinations of the target.
     """
 

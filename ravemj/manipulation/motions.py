@@ -28,7 +28,7 @@ _CLOSE = 1e-6
 
 
 def find_path(problem: Problem, search: Callable[[Problem], Search], spacing: float = 0.0) -> Search:
-    """Search for a path. A path on a constraint is shortened and densified, since smoothers would leave it.
+    """Search for a path. A path on a constraint is shortened and densified here, since smoothers would violate it.
 
     ``spacing`` is the maximum weighted distance of waypoints, 0 for none.
     """

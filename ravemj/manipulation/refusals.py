@@ -36,7 +36,7 @@ _ORDER = list(Cause)
 
 
 class Tally:
-    """Sample counts by region and cause. A sample with several solutions has the cause of the last test reached.
+    """Sample counts by region and cause. If a sample has several solutions, the cause of the last test reached counts.
 
     Args:
         names: The names of the regions.

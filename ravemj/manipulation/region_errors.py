@@ -20,7 +20,7 @@ class Lacking(NamedTuple):
 
     Attributes:
         vector: Returns the error, shape (k,).
-        full: Returns the error and its Jacobian by the values of the bodies, shape (k, n).
+        full: Returns the error and its Jacobian with respect to the configuration of the bodies, shape (k, n).
     """
 
     vector: Callable[[], Floats]
@@ -85,7 +85,7 @@ def region_error(region: PoseSet, tool: MovingFrame, frame: MovingFrame | None) 
     Args:
         region: The region: in the world, or in the moving frame.
         tool: The tool.
-        frame: The frame of the region if it moves with the values, else None.
+        frame: The frame of the region if it depends on the configuration, else None.
     """
     Te_w = inverse(region.Tw_e)
 

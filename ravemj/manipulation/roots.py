@@ -74,7 +74,7 @@ class FunctionRoots:
         return []
 
     def next(self, refuse: Refuse) -> Floats | None:
-        """Return the root of the callback, if it is accepted."""
+        """Return the start or goal that the callback returns; None if it returns none or one that is refused."""
         root = self.sample()
         return None if root is None or refuse(root) is not None else root
 
@@ -88,7 +88,7 @@ class PoseSolutions(NamedTuple):
     """IK solutions of a pose.
 
     Attributes:
-        rows: The solutions within the limits, the nearest turns of each IK branch first, shape (K, n).
+        rows: The solutions within the limits, shape (K, n). Those that differ by full turns from better ones come last.
         cause: The cause of rejection if there is no solution.
     """
 
@@ -143,7 +143,7 @@ class RegionRoots:
         return roots
 
     def next(self, refuse: Refuse) -> Floats | None:
-        """Return another root of a random pose; None if the pose has none."""
+        """Return another IK solution of a random pose of a region; None if no solution of the pose is allowed."""
         if not self._ready:
             self._ready = self._draw(refuse)
         return self._ready.pop() if self._ready else None

@@ -45,7 +45,7 @@ class Tool(NamedTuple):
         return body.link_transform(self.effector).dot(self.T_effector_tool)
 
     def translation_jacobian(self, body: BodyState) -> Floats:
-        """Return the derivative of the tool's position in the world by the joint values, shape (3, n)."""
+        """Return the derivative of the tool's position in the world with respect to the joint values, shape (3, n)."""
         effector = self.effector
         point = body.link_transform(effector).dot(self.origin)[:3]
         return body.dynamics.translation_jacobian(effector, point).take(self.dofs, 1)

@@ -53,8 +53,8 @@ class JointBuilder:
     """Joint under construction; anchor and axis directions are in the frame of the first listed link.
 
     Attributes:
-        weld_turn: Rotation from the axes of a weld to those that OpenRAVE reports; None means the second link's
-            rotation.
+        weld_turn: Rotation that converts the axes of a weld to those that OpenRAVE reports; None means the rotation of
+            the child in the parent.
     """
 
     name: str
@@ -134,7 +134,7 @@ class BodyBuilder:
         )
 
     def set_parts(self, parts: "BodyParts") -> None:
-        """Restore earlier parts."""
+        """Restore parts that ``parts`` returned earlier."""
         self.forget_names()
         self.name, self.links, self.joints, self.adjacent, self.manipulators, self.sensors = parts
 

@@ -39,7 +39,7 @@ class Edge(NamedTuple):
 
 
 class Hierarchy(NamedTuple):
-    """Directed joints.
+    """Parent and child links of joints, and the joints that place links.
 
     Attributes:
         swapped: For each joint, whether its second listed link is the parent.
@@ -51,7 +51,10 @@ class Hierarchy(NamedTuple):
 
 
 def decide(static_links: Sequence[bool], edges: Sequence[Edge]) -> Hierarchy:
-    """Direct the joints of a body: active ones in DOF order, then passive ones."""
+    """Determine the parent link of each joint, and the joints that place links.
+
+    ``edges`` are the active joints in DOF order, then the passive ones.
+    """
     if not edges:
         return Hierarchy((), ())
     has_dofs = any(edge.active for edge in edges)  # without static links, OpenRAVE assigns no depths

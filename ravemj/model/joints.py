@@ -103,9 +103,9 @@ def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
 
 
 def moving_direction(joint: Joint, axis: int) -> Vec3:
-    """Return the direction of an axis in the parent; a ball joint has none.
+    """Return the direction of an axis in the parent; not for ball joints, which have no single axis.
 
-    A spherical mimic joint has one value, the first of its rotation vector (random-xml-41, -102).
+    A spherical mimic joint moves about x: its one value is the first of its rotation vector (random-xml-41, -102).
     """
     return _X if joint.kind == "spherical" else joint.axes[axis].direction
 
@@ -165,7 +165,7 @@ def rotation_vector(wxyz: Wxyz) -> Vec3:
 def subtracts_in_turns(body: KinBody, joint: Joint) -> bool:
     """Return whether differences of a circular joint's values take the shorter arc.
 
-    As in OpenRAVE, they do not if the parent link is static (gap-13: not static, random-api-102: static).
+    As in OpenRAVE, they do not if the parent link is static (conformance tests gap-13 and random-api-102).
     """
     return not body.links[joint.parent].static
 

@@ -10,7 +10,7 @@ from ravemj.core.transforms import Vec3
 
 @dataclass(frozen=True)
 class CertifiedSpan:
-    """Time span of a motion, with a pair of shapes.
+    """Time span of a motion in which a pair of shapes is undecided or exempt, or nearest.
 
     Attributes:
         start: Start time [s].

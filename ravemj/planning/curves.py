@@ -73,7 +73,7 @@ class Intervals(NamedTuple):
         return middles, np.abs(self.control - middles[:, None]).max(axis=1)
 
     def parts(self, numbers: Ints) -> tuple[Self, Ints]:
-        """Divide each interval into a number of equal durations; return the parts, and the row of each one."""
+        """Divide each interval into ``numbers`` equal durations; return them, and the index of the interval of each."""
         times, control, origins = [self.times[:0]], [self.control[:0]], [np.zeros(0, dtype=int)]
         for number in np.unique(numbers).tolist():
             rows = np.flatnonzero(numbers == number)

@@ -9,13 +9,13 @@ from ravemj.planning.edges import Edges, Proof
 from ravemj.planning.rrt import Budget, connect
 
 AROUND = 0.3
-"""Maximum distance of a detour from the line in each coordinate; weighted."""
+"""Maximum weighted distance, in each coordinate, of a detour from the part of the path that it replaces."""
 
 _ITERATIONS = 200
 
 
 def certified_detour(edges: Edges, proof: Proof, part: Floats, random: np.random.Generator) -> Floats | None:
-    """Return a path near a part of a path, shape (m, n), from its start to its end, with certified edges, or None."""
+    """Return a nearby path with certified edges that replaces part of a path, shape (m, n); None if none is found."""
     space, around = edges.space, AROUND / edges.space.weights
     lower = np.maximum(part.min(axis=0) - around, space.lower)
     upper = np.minimum(part.max(axis=0) + around, space.upper)

@@ -37,7 +37,7 @@ class Certifier(Protocol):
         ...
 
     def certificate(self, curves: Sequence[Curve], *, whole: bool = True) -> Certificate:
-        """Return the certificate of a motion; unless ``whole``, the first undecided span is the only one."""
+        """Return the certificate of a motion; unless ``whole``, the proof ends at the first undecided span."""
         ...
 
 
@@ -64,7 +64,7 @@ class Edges:
         step: Length of a step of a tree, a weighted distance; 0 selects ``STEP``.
         proof: Additional test of lines that shorten a path, or None.
         certifier: Returns the certifier of motions, or None.
-        clear: The test of one configuration of a shortcut; None for ``allowed``.
+        clear: The test of one configuration on a line that shortens a path; None means ``allowed``.
 
     Attributes:
         is_strict: Whether the edges of trees have to pass ``proof``, too.

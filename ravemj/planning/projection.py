@@ -53,7 +53,7 @@ def descend(
     random: np.random.Generator,
     tries: int,
 ) -> Search:
-    """Reduce errors one after the other by descent from the start, until an error norm is at most ``tolerance``.
+    """Reduce each error in turn by descent from the start; stop at the first whose norm is at most ``tolerance``.
 
     If a damped step is not allowed or increases the error, the best of ``tries`` random steps is taken.
     """

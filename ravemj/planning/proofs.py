@@ -83,7 +83,7 @@ class Spaces(Protocol):
 
 
 class Span(NamedTuple):
-    """Time span with a pair of shapes.
+    """Time span in which a pair of shapes is undecided or exempt.
 
     Attributes:
         start: Start time [s].
@@ -97,7 +97,7 @@ class Span(NamedTuple):
 
 
 class Cases(NamedTuple):
-    """Pairs of shapes on intervals, in the order of the intervals.
+    """Tests of a proof, ordered by interval: each is for one interval and one pair of shapes.
 
     Attributes:
         rows: Indices of the intervals, shape (k,).
@@ -108,7 +108,7 @@ class Cases(NamedTuple):
     pairs: Ints
 
     def of_rows(self, start: int, end: int | None = None) -> "Cases":
-        """Return the cases of the intervals from ``start`` to ``end``, whose numbers then begin with 0."""
+        """Return the tests of the intervals from ``start`` to ``end``; ``rows`` then counts from 0 at ``start``."""
         first, last = np.searchsorted(self.rows, (start, len(self.rows) + start if end is None else end)).tolist()
         return Cases(self.rows[first:last] - start, self.pairs[first:last])
 

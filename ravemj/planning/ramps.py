@@ -134,7 +134,7 @@ def fit_matched_ramps(steps: Floats, duration: float, speed: Floats, acceleratio
 def fit_ramps(
     steps: Floats, start: Floats, end: Floats, duration: float, speed: Floats, acceleration: Floats
 ) -> Ramps | None:
-    """Return motions of a given positive duration with minimal accelerations; None if a joint has none.
+    """Return motions of a given positive duration with minimal accelerations; None if the limits of a joint allow none.
 
     Both ramps of a joint have opposite accelerations. A joint that would become too fast cruises at its maximum speed.
     Arguments are as for ``shortest_ramps``.

@@ -146,8 +146,8 @@ class Search:
     Attributes:
         end: Reason for its end.
         path: Waypoints of a path of straight lines, shape (m, n); None if no path was found.
-        start: Index of the start of the path.
-        goal: Index of the goal of the path.
+        start: Index, among the starts, of the first waypoint.
+        goal: Index, among the goals, of the last waypoint.
         iterations: Number of iterations.
         trees: The trees; adjacent nodes are at most one step apart.
     """

@@ -93,7 +93,7 @@ class JointStates:
     def motion(self) -> tuple[Motion, list[str]] | None:
         """Return the recorded motion, starting at time 0, and its joint names; None if no state has arrived.
 
-        Before its first value arrived, a joint has this value.
+        Until a joint's first value arrives, the motion contains this first value.
         """
         with self._lock:
             rows = list(self._rows)

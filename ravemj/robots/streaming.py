@@ -19,7 +19,7 @@ from ravemj.errors import RavemjError
 _LOG = logging.getLogger("ravemj")
 
 HOLD = 0.5
-"""Duration of a hold [s]."""
+"""Duration [s] of a hold, during which the latest values are sent with zero velocities."""
 
 SLOW = 1.1
 """Ratio of the actual to the nominal period above which a warning is given."""
@@ -39,7 +39,7 @@ class StreamClock(Protocol):
         ...
 
     def wait(self, seconds: float, ended: threading.Event) -> None:
-        """Wait, at most until an event is set."""
+        """Wait for a time [s], or until the event ``ended`` is set."""
         ...
 
 
@@ -51,7 +51,7 @@ class RealTime:
         return time.monotonic()
 
     def wait(self, seconds: float, ended: threading.Event) -> None:
-        """Wait, at most until an event is set."""
+        """Wait for a time [s], or until the event ``ended`` is set."""
         ended.wait(max(0.0, seconds))
 
 
@@ -74,7 +74,7 @@ class MotionRows(NamedTuple):
 
 
 class Guard(NamedTuple):
-    """Stop conditions: the feedback, its largest distance from the motion [rad or m], and its largest age [s]."""
+    """Stop conditions: feedback function, maximum distance from the motion [rad or m], maximum age of a state [s]."""
 
     feedback: Feedback | None = None
     tolerance: float = math.inf

@@ -96,7 +96,8 @@ class Kind(NamedTuple):
     """A built-in job.
 
     Attributes:
-        compute: Function of the work, the items and a random generator that returns arrays with a row for each item.
+        compute: Function that returns arrays with a row for each item, given the work, the items and a random
+            generator.
         shape: Returns the shape of an item.
         sample: Draws random items.
         options: Names of the options.

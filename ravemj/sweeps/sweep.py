@@ -84,7 +84,7 @@ def sweep(  # noqa: PLR0913 - keyword arguments
             function: its further arguments, by name.
         shard: Items per shard; None: as many as take 20 s or fill 100 MB. A function gets whole blocks.
         block: Items that share a random generator; None: 1 for ``plan``, else 1000.
-        ahead: Maximum number of shards submitted to an ``Executor`` at a time; more than it has processes.
+        ahead: Maximum number of shards submitted to an ``Executor`` at a time; choose more than it has processes.
         retries: Number of retries of a shard whose process died.
         timeout: Time limit of a shard [s]; for an ``Executor``, the maximum time without a finished shard. None: no
             limit.

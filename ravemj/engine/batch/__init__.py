@@ -18,7 +18,7 @@ from ravemj.engine.kinematics import BodyKinematics, fixed_view
 from ravemj.model.inertia import Inertias
 
 POSES, MOTIONS = 60_000, 8_000
-"""Number of link poses, and of motions, per chunk: few enough for the cache, enough for numpy."""
+"""Link poses per chunk, for poses only and for Jacobians or dynamics: few enough for the cache, enough for numpy."""
 
 
 FEW_LINKS = 12
@@ -28,7 +28,7 @@ FEW_LINKS = 12
 class Batch:
     """Chain of links of a body, prepared for many joint values. The body's state is neither used nor changed.
 
-    Poses are those of ``SetDOFValues`` within the limits. Joint limits are ignored, except those of mimic joints.
+    Only the limits of mimic joints are enforced. Within all limits, poses are those of ``SetDOFValues``.
     """
 
     def __init__(self, kinematics: BodyKinematics, dynamics: BodyDynamics) -> None:

@@ -20,7 +20,7 @@ ROOT = -1
 
 @dataclass(slots=True)
 class Step:
-    """Step of a chain: a root link, a joint axis (z of the step's frame), or a spherical joint in its parent's axes."""
+    """Element of a chain: root link, joint axis (z of the element's frame), or spherical joint (in parent's axes)."""
 
     kind: str  # ``root``, ``hinge``, ``slider`` or ``spherical``
     parent: int  # the parent step
@@ -37,8 +37,8 @@ class LinkChain:
     """Links of a body in topological order.
 
     Attributes:
-        steps: The steps that move the links.
-        T_step_links: Pose of each link in the frame of the step that it is fixed to, shape (links, 4, 4).
+        steps: The chain elements (roots and joint axes) that move the links.
+        T_step_links: Pose of each link in the frame of the chain element that it is fixed to, shape (links, 4, 4).
     """
 
     def __init__(self, kinematics: BodyKinematics, tree: CoordinateTree) -> None:
@@ -85,20 +85,20 @@ class LinkChain:
         return index
 
     def path_to(self, link: int) -> list[int]:
-        """Return the steps from the root to a link."""
+        """Return the chain elements from the root to a link."""
         path = [self._step_of[link]]
         while self.steps[path[-1]].parent != ROOT:
             path.append(self.steps[path[-1]].parent)
         return path[::-1]
 
     def frames(self, values: Floats, wanted: Sequence[int] | None = None) -> Iterator[tuple[Step, Floats]]:
-        """Yield the steps with their frames.
+        """Yield the chain elements with their frames.
 
-        A frame is released after its last child, so that memory in use fits into the cache.
+        A frame is released after the last child of its element, so that memory in use fits into the cache.
 
         Args:
             values: Joint values, shape (dof, N).
-            wanted: The steps to compute, parents before children; by default all.
+            wanted: The elements to compute, parents before children; by default all.
         """
         chosen = range(len(self.steps)) if wanted is None else wanted
         ways = self._ways(values, chosen)

@@ -3,7 +3,7 @@
 Arrays have a first axis for the links or velocity coordinates, then one for components, then one for configurations.
 Motions are six numbers in world axes: the angular velocity, and the velocity of the body's point that passes through a
 fixed reference point. Accelerations are their time derivatives. Forces are their duals: moment about the reference
-point, and force. The roots rest.
+point, and force. The root links are at rest.
 """
 
 import numpy as np
@@ -68,7 +68,7 @@ class KinematicState:
         return own
 
     def of_links(self, of_coordinates: Floats) -> Floats:
-        """Return for each link the value of the last coordinate that moves it; 0 for the roots."""
+        """Return for each link the value ``of_coordinates`` of the last coordinate that moves it; 0 for the roots."""
         by_link = np.zeros((len(self.tree.last), *of_coordinates.shape[1:]))
         moved = [link for link, last in enumerate(self.tree.last) if last != NONE]
         by_link[moved] = of_coordinates[[self.tree.last[link] for link in moved]]

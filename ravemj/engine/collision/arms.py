@@ -1,4 +1,8 @@
-"""Collision pairs of the links beyond an arm and of links that the arm does not move, also for other tool poses."""
+"""Collision pairs of an arm: its own links, the end effector's links, and links that the arm does not move.
+
+The links *beyond* an arm are those of the end effector and gripper. ``motions_of_end`` serves to test them at other
+tool poses.
+"""
 
 from ravemj.core.graphs import ordered_pair
 from ravemj.core.transforms import Floats
@@ -60,7 +64,10 @@ def arm_and_rest(world: CollisionWorld, body: BodyState, arm: Manipulator, *, wi
 
 
 def motions_of_end(body: BodyState, arm: Manipulator, motion: Floats) -> dict[LinkOf, Floats]:
-    """Return a map from each link beyond an arm, and of bodies held there, to ``motion`` (4, 4); input of ``moved``."""
+    """Return a map from each link beyond an arm, and of bodies held there, to the displacement ``motion`` (4, 4).
+
+    It is the argument of ``CollisionWorld.moved``.
+    """
     end = set(links_beyond(body.scene, arm))
     held = [held_body for grab in body.grabs if grab.link in end for held_body in held_with(grab.body)]
     links = [(held_body, link) for held_body in held for link in range(len(held_body.scene.links))]

@@ -5,10 +5,10 @@ bound of their distance. MuJoCo's search for the nearest points gives good direc
 since s(d) is computed here from support functions. Non-convex shapes are inside of their hulls; if hulls are too close,
 the triangles are measured.
 
-Joint values that change by at most e_j move a point of a shape by at most t_n: from the joint next to the shape to the
-one next to the world, t_j = t_{j-1} + e_j (r_j + t_{j-1}), where r_j is the largest distance of the shape from the axis
-of the joint in the initial configuration; a prismatic joint adds e_j. (The joints can be changed one after the other in
-this order, since the axes of joints not yet changed have not moved.)
+Joint values that change by at most e_j move a point of a shape by at most t_n: from the joint j = 1 next to the shape
+to the joint n next to the world, t_j = t_{j-1} + e_j (r_j + t_{j-1}) with t_0 = 0, where r_j is the largest distance of
+the shape from the axis of the joint in the initial configuration; a prismatic joint adds e_j. (The joints can be
+changed one after the other in this order, since the axes of joints not yet changed have not moved.)
 """
 
 from collections.abc import Sequence
@@ -89,8 +89,9 @@ class Clearances:
         data: Its state; ``take`` reads it, and ``test`` changes geom poses in it.
         shapes: Exact tests of two geoms.
         pairs: Both geoms of each pair, shape (n, 2).
-        chains: The joints that move each geom. Joints have MuJoCo's numbers; higher numbers are motions of bases.
-        bases: The MuJoCo body at the origin of each base; each has two motions, a rotation and a translation.
+        chains: The joints that move each geom, by MuJoCo's numbers; higher numbers are virtual joints of the bases.
+        bases: The MuJoCo body at the origin of each moving base, which has two virtual joints: rotation and
+            translation.
     """
 
     most = _ONCE
@@ -148,10 +149,12 @@ class Clearances:
     def test(self, changes: Floats, rows: Ints, pairs: Ints, apart: float = 0.0) -> Tested:
         """Test which pairs may come closer than a distance [m] while joints change.
 
+        Each of the k tests is for one configuration and one pair.
+
         Args:
-            changes: Maximum change of each joint [rad or m], shape (m, joints).
-            rows: The configuration of each case, ascending, shape (k,).
-            pairs: The pair of each case, shape (k,).
+            changes: Maximum change of each joint [rad or m] in each configuration, shape (m, joints).
+            rows: Index of the configuration of each test, ascending, shape (k,).
+            pairs: Index of the pair of each test, shape (k,).
             apart: The distance.
         """
         first, second = self._first[pairs], self._second[pairs]

@@ -239,7 +239,7 @@ class Placement:
     """Moves joints of a body in the model of the world.
 
     Attributes:
-        is_plain: Whether joint values are copied to ``qpos``, possibly with affine mimic joints.
+        is_plain: Whether the moved elements of ``qpos`` are joint values, or affine functions of them (mimic joints).
     """
 
     def __init__(self, world: CollisionWorld, body: BodyState, dofs: Sequence[int]) -> None:
@@ -316,9 +316,10 @@ class MovingTest:
         return self._rest is not None and self._world.collide(self._rest)
 
     def with_clearance(self, ends: Iterable[Floats]) -> Callable[[Floats], bool]:
-        """Return a test whether no shapes collide and no hulls nearly touch, except for those that do at an end.
+        """Return a test whether no shapes collide and no hulls nearly touch, except hulls that do so in ``ends``.
 
-        Motions that pass it at every step are rarely in collision between the steps.
+        ``ends`` are configurations, such as the start and the goal of a path. Motions that pass the test at every step
+        are rarely in collision between the steps.
         """
         world, shapes, close = self._world, self._world.shapes, set[int]()
         geoms = world.geoms_of_body(self._body)

@@ -111,8 +111,8 @@ class Detection:
     def detect(self, masks: Masks) -> NDArray[np.int32] | None:
         """Detect hulls that touch or nearly touch at present.
 
-        If there was more than one query in the last configuration, all bodies are tested, once for all queries in this
-        configuration.
+        If the previous configuration had more than one query, all bodies are tested at the first query, and the other
+        queries in this configuration use the result.
 
         Args:
             masks: The masks of the query.

@@ -49,7 +49,7 @@ def _of_pair(world: CollisionWorld, pair: Pair) -> list[Contact]:
 
 
 def present(world: CollisionWorld, pairs: Sequence[Pair]) -> dict[Pair, list[Contact]]:
-    """Return MuJoCo's last contacts of those of the given pairs that have any."""
+    """Return MuJoCo's last contacts by pair, for the given pairs that have contacts."""
     if not pairs or not world.model.data.ncon:
         return {}
     wanted: dict[Pair, tuple[Pair, bool]] = {}

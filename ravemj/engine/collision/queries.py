@@ -99,7 +99,7 @@ def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> P
 
 
 def link_and_own_body(world: CollisionWorld, link: LinkOf) -> Pairs:
-    """Return the pairs in ``itself`` of a link, with its grabbed bodies, and the rest of its body."""
+    """Return the self-collision pairs, as of ``itself``, that involve a link or its grabbed bodies."""
     body, index = link
     others = range(len(body.scene.links))
     return itself(world, body, frozenset(ordered_pair(index, other) for other in others))

@@ -103,7 +103,10 @@ class TriangleTests:
         return min(distance, limit)
 
     def overlaps(self, mesh: int, other: int, touching: float) -> Iterator[tuple[float, Floats]]:
-        """Yield signed distance [m] and ``segment``, the nearest points, of each touching pair with a mesh triangle."""
+        """Yield signed distance [m] and nearest points, shape (6,), of each touching pair of a mesh and another geom.
+
+        A pair is a triangle of the mesh and the other geom or, if that is a mesh, a triangle of it.
+        """
         result, place = fcl.CollisionResult(), _OTHER_TRIANGLE
         if self._is_mesh(other):
             fcl.collide(self._placed(mesh), self._placed(other), _ALL, result)

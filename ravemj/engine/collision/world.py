@@ -1,4 +1,4 @@
-"""Collision world: owners of geoms, and cached geom pairs of queries."""
+"""Collision world: the body and link of each geom, and cached geom pairs of queries."""
 
 from collections.abc import Callable, Generator, Hashable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -45,8 +45,8 @@ class GeometryOf(NamedTuple):
 class CollisionWorld:
     """Geoms of all bodies in the present model, and cached pairs of queries.
 
-    ``Simulation.collisions`` returns it, up to date. It stays valid while bodies move; any other change requires a new
-    one: ``stamp`` is its ``collision_stamp``.
+    ``Simulation.collisions`` returns it, up to date. It stays valid while bodies move; after any other change, which
+    increases the simulation's ``collision_stamp`` above ``stamp``, a new one is required.
     """
 
     def __init__(self, bodies: tuple[BodyState, ...], model: WorldModel, stamp: int) -> None:

@@ -17,7 +17,7 @@ from ravemj.model.scene import Joint
 
 
 class DerivativeRows:
-    """Derivatives by MuJoCo's velocities, such as a Jacobian or generalised forces.
+    """Derivatives with respect to MuJoCo's velocities, such as a Jacobian, or generalised forces.
 
     Attributes:
         matrix: MuJoCo's output, shape (..., nv).
@@ -36,7 +36,10 @@ class DerivativeRows:
             self._places = np.where(columns < nv, firsts + columns, count * nv)
 
     def of_dofs(self, coupling: Floats | None) -> Floats:
-        """Return a copy of the derivatives by the DOFs, shape (..., dof), using a coupling matrix (nv, dof), if any."""
+        """Return the derivatives with respect to the DOFs, shape (..., dof); a copy.
+
+        Coupled DOFs require their coupling matrix, shape (nv, dof).
+        """
         return self._numbers[self._places] if coupling is None else self.matrix.dot(coupling)
 
 
@@ -145,7 +148,7 @@ class BodyDynamics:
         return rows.of_dofs(self._matrix(self._coupling()) if matrix is None else matrix)
 
     def translation_jacobian(self, link: int, point: Floats) -> Floats:
-        """Return the derivative of a link point's world position by the DOF values, shape (3, dof)."""
+        """Return the derivative of a link point's world position with respect to the DOF values, shape (3, dof)."""
         self._kinematics.place_coms()
         mujoco.mj_jac(self._model, self._data, self._moving.matrix, None, point, self._body_ids[link])
         return self._of_dofs(self._moving)
@@ -193,10 +196,10 @@ class BodyDynamics:
         return WholeBodyRows(self._kinematics, count, columns.take(dofs), base=base)
 
     def hessian(self, link: int, point: Floats) -> tuple[Floats, Floats]:
-        """Return the derivatives of ``translation_jacobian`` and ``rotation_jacobian`` by the DOF values.
+        """Return the derivatives of ``translation_jacobian`` and ``rotation_jacobian`` with respect to the DOF values.
 
         Returns:
-            Two arrays of shape (dof, 3, dof): ``[i, :, j]`` is the derivative of the Jacobian's column j by DOF i.
+            Two arrays of shape (dof, 3, dof): ``[i, :, j]`` is the derivative of column j with respect to DOF i.
         """
         self._kinematics.place_coms()
         moving, turning = self._moving.matrix, self._turning.matrix
@@ -220,7 +223,7 @@ class BodyDynamics:
         return hessian[:, :, :3].transpose(0, 2, 1).copy(), hessian[:, :, 3:].transpose(0, 2, 1).copy()
 
     def com_jacobian(self) -> Floats:
-        """Return the derivative of the body's centre of mass by the DOF values, shape (3, dof)."""
+        """Return the derivative of the body's centre of mass with respect to the DOF values, shape (3, dof)."""
         self._kinematics.place_coms()
         of_root, masses = np.zeros((3, self._model.nv)), self._model.body_subtreemass
         self._moving.matrix[:] = 0.0

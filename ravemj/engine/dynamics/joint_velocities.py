@@ -34,8 +34,9 @@ class JointAxes:
         The result is cached, since ``velocities`` is immutable and used in many configurations.
 
         Returns:
-            Angular velocities, or for sliders velocities of origins, shape (joints, 3); and for each slider the matrix
-            of the cross product with its parent's angular velocity, shape (sliders, 3, 3).
+            The relative angular velocity of the child link, or for a slider the relative velocity of the child's
+            origin, shape (joints, 3); and for each slider the matrix of the cross product with its parent's angular
+            velocity, shape (sliders, 3, 3).
         """
         if self._seen is None or self._seen[0] is not velocities:
             apart = velocities.take(self.children, 0) - velocities.take(self.parents, 0)
@@ -59,7 +60,7 @@ class JointVelocities:
     def of_joints(self, joints: Sequence[Joint], velocities: Floats) -> list[Floats]:
         """Return the velocities of joints, active or passive, from link velocities, shape (links, 6).
 
-        For each joint, they are those of its axes [rad/s or m/s], shape (axes,).
+        For each joint, the result has the velocities of its axes [rad/s or m/s], shape (axes,).
         """
         return self._shown(velocities, JointAxes(joints, self._kinematics.body_ids))
 

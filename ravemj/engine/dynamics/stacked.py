@@ -41,8 +41,8 @@ def with_base_columns(jacobians: Floats, arms: Floats) -> Floats:
 class WholeBodyRows:
     """Jacobians of several points and of the centre of mass, by joints and a base twist, in one array.
 
-    A buffer contains MuJoCo's Jacobians, a zero, a one, and the points relative to the base with both signs. So one
-    ``take`` selects the columns of the joints and composes those of the base.
+    A buffer contains MuJoCo's Jacobians, the numbers 0 and 1, and the components of the points relative to the base
+    with both signs. Columns of the joints and of the base then need only a single indexing by ``numpy.take``.
     """
 
     def __init__(self, kinematics: BodyKinematics, count: int, columns: Ints, *, base: bool) -> None:

@@ -313,7 +313,7 @@ class BodyKinematics:
         self._touch()
 
     def inner_index(self, qpos: int) -> int:
-        """Return the index among ``inner_qpos`` of an index into ``qpos``."""
+        """Convert an index into ``qpos`` to an index into ``qpos`` without the free joints of the roots."""
         return qpos - 7 * sum(root < qpos for root in self.root_qpos)
 
     def rest_transform(self, link: int) -> Floats:

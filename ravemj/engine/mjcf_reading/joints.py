@@ -38,7 +38,7 @@ class JointReader:
             index: MuJoCo's number of the joint.
             links: Parent and child.
             T_parent_child: Pose of the child in the parent at the joint's ``ref``.
-            T_parent_body: Pose in the parent of the MJCF body whose frame defines anchor and axis.
+            T_parent_body: Pose, in the parent, of the MJCF body in whose frame anchor and axis are given.
         """
         model, written = self._model, self.written[index]
         name, kind = self._names.joints[index], int(model.jnt_type[index])

@@ -1,7 +1,7 @@
 """Models written by ravemj: bodies are restored from texts in ``<custom>``, unless the MJCF was edited.
 
-A text contains a body with all digits. Each value that is also in the MJCF is compared with the writer's output for the
-body: if they differ, the MJCF was edited and takes precedence.
+Each text contains one body in full precision. Each value that is also in the MJCF is compared with the writer's output
+for the body: if they differ, the MJCF was edited and takes precedence.
 """
 
 from collections.abc import Sequence

@@ -164,7 +164,10 @@ class BodyState:
         return self.made_once(BodyBounds, self.scene.links)
 
     def made_once(self, make: Callable[[_Part], _Made], part: _Part) -> _Made:
-        """Return the cached result of a function of a part of the scene, recomputed if the part changes."""
+        """Return the cached result of ``make(part)``; ``part`` is the description or a field of it, such as its links.
+
+        It is recomputed if ``part`` is another object than before.
+        """
         known = self._made.get(make)
         if known is None or known[0] is not part:
             self._made[make] = known = part, make(part)
@@ -235,7 +238,7 @@ class BodyState:
             self.simulation.changed.add(self)
 
     def carry(self) -> None:
-        """Move the grabbed bodies to their relative poses."""
+        """Move the grabbed bodies along with the links that grab them."""
         for grab in self._grabs:
             grab.body.set_transform(self.link_transform(grab.link) @ grab.T_link_body)
 

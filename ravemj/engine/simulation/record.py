@@ -16,7 +16,7 @@ class BodyRecord(NamedTuple):
         scene: Description of the body.
         place: Index in the world, from 1.
         link_enabled: For each link, whether it takes part in collision checks.
-        rest_poses: See ``BodyState``.
+        rest_poses: Link poses that determine which links touch at rest, see ``tested_pairs``; None outside a world.
         configuration: Joint values and link poses; None if they are those of the description.
         velocities: Link velocities, shape (links, 6).
         grabs: For each grab: index of the body, link, ``T_link_body`` and ignored links.

@@ -61,11 +61,11 @@ class WorldModel(Compiled):
         return copy.copy(self.model)
 
     def description(self, body: BodyState) -> KinBody:
-        """Return the description of a body in this model; its own if it is not in the model."""
+        """Return the description of a body in this model or, if the model does not contain the body, the body's own."""
         return self._described.get(body, body.scene)
 
     def part(self, body: BodyState) -> ModelPart:
-        """Return the part of this model that is a body."""
+        """Return the part of this model that belongs to a body."""
         return self._parts[body]
 
     def take(self, bodies: Iterable[BodyState]) -> None:

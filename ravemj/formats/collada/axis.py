@@ -52,7 +52,7 @@ class AxisReader(NamedTuple):
 
     @property
     def wrap(self) -> float:
-        """The centre of the full turn to which OpenRAVE wraps values [rad]: the middle of limits beyond ±pi, else 0."""
+        """Centre of the full turn to which OpenRAVE wraps values [rad]: the middle of limits that exceed ±pi, or 0."""
         written = self._written_limits()
         return sum(written) / 2 if written and max(map(abs, written)) > math.pi else 0.0
 

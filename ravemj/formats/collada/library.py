@@ -282,7 +282,7 @@ class Library:
         return None
 
     def value(self, element: Element | None, *scopes: Element) -> Element | None:
-        """Return the element with the literal value of an element, which may name a parameter instead."""
+        """Return the element with a literal value: the given one or, if it names a parameter, that of the parameter."""
         if element is None:
             return None
         param = child(element, "param")

@@ -74,7 +74,7 @@ class FileContent:
 
         Args:
             name: Path relative to this file's folder, or a relative URL.
-            is_raw: Whether the file is raw numbers of any content.
+            is_raw: Whether the file contains raw numbers; see ``FileAccess.permits_part``.
 
         Returns:
             The file, or None if it cannot be read, is remote, refers back to itself, or must not be read, which is

@@ -1,6 +1,6 @@
-"""Triangulation of polygons: quadrilaterals are halved, convex polygons become fans, others are clipped by ears.
+"""Triangulation of polygons: quadrilaterals are halved, convex polygons become fans, others need ear clipping.
 
-Conformance cases define the order of the triangles, so no package is used.
+Conformance tests prescribe the order of the triangles, so no package is used.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Equality constraints for mimic joints, which are active when MuJoCo simulates.
 
-A constraint is a polynomial of degree 4 at most, in the displacement of one other joint from ``ref``. Mimic joints that
-are linear in several joints become fixed tendons.
+A constraint is a polynomial of degree 4 at most in the value of one other joint minus that joint's ``ref``. Mimic
+joints that are linear in several joints become fixed tendons.
 """
 
 from collections.abc import Sequence

@@ -51,7 +51,7 @@ class StoredNames(NamedTuple):
         geoms: Number of geoms of each link.
         excludes: Pairs of names that are excluded.
         decomposed: Whether meshes are several convex parts.
-        places: Source of each link in the converted file, as in its comment.
+        places: File and line of each link in the user's model file, as in the MJCF's comment about the link.
     """
 
     links: tuple[str, ...]
@@ -62,7 +62,7 @@ class StoredNames(NamedTuple):
     places: tuple[str, ...] = ()
 
     def origin(self, link: int, here: Source) -> Source:
-        """Return the source of a link, given its line in the MJCF."""
+        """Return the position of a link in the user's model file or, if that is unknown, in the MJCF: ``here``."""
         if link >= len(self.places):
             return here
         file, _, line = self.places[link].rpartition(":")

@@ -250,7 +250,7 @@ class Context:
 
 @dataclass
 class Placed:
-    """An open element with a transform of its own."""
+    """An element that is being read and has a transform of its own."""
 
     context: Context
     placement: ChildTransform = field(default_factory=ChildTransform)

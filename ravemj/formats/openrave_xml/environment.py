@@ -57,7 +57,7 @@ class Reading:
         failure: The error that ended the reading, or None.
         named_files: The files that were read, including meshes, each with the element that names it; see
             ``FileAccess``.
-        renames: Whether a body gets another name if its own exists in the environment.
+        renames: Whether a body is renamed if the environment already has a body of its name.
     """
 
     scene: Scene

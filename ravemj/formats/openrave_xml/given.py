@@ -1,7 +1,8 @@
 """Attributes passed by the caller together with a file, in addition to those of a body's element.
 
-They are applied after those of the file: a name replaces its name, a prefix is put before its names, scale factors are
-multiplied. OpenRAVE applies them if the root of the file is a body, and not inside an ``<Environment>``.
+They are applied after those of the file: a name replaces the body's name, a prefix is put before the names of its
+parts, scale factors are multiplied. OpenRAVE applies them if the root of the file is a body, and not inside an
+``<Environment>``.
 """
 
 from collections.abc import Collection, Mapping, Sequence

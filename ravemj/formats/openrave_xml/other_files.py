@@ -1,4 +1,4 @@
-"""Other files as bodies: the first body of a COLLADA file is merged into the open body, a mesh becomes one link."""
+"""Other files as bodies: the first body of a COLLADA file joins the body being read, a mesh becomes one link."""
 
 import os
 from dataclasses import replace

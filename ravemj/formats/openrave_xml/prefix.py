@@ -68,7 +68,7 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
 def youngest_first(parts: list[Part], older: Sequence[Part]) -> list[Part]:
     """Return the new parts in reverse order, followed by the older ones (gap-44, gap-45).
 
-    If there are no older ones, the order is kept (gap-43), and so is that of parts of a COLLADA file (gap-75).
+    The order is kept if there are no older parts (gap-43), and for parts of a COLLADA file (gap-75).
     """
     return [*reversed(_newer(parts, older)), *older] if older else parts
 

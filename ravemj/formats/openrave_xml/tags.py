@@ -21,7 +21,8 @@ class Tag(NamedTuple, Generic[Target_contra]):
         read: Function that reads the element into its parent's object.
         meaning: Meaning of the element, or the reason why it is ignored, in a few words.
         left_out: Whether it has no effect on the model.
-        once: Whether only the last element is used: among all tags with this ``read``, or among those of this name.
+        once: True if only the last of all elements with this ``read`` is used; a name if only the last of all elements
+            with this name as ``once`` is used.
     """
 
     read: Callable[[Target_contra, Element], None]

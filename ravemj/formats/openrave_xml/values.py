@@ -154,12 +154,12 @@ def word(element: Element, diagnostics: Diagnostics) -> str:
 
 
 def is_true(value: str) -> bool:
-    """Return whether a text is one of OpenRAVE's two spellings of true; all other texts are false."""
+    """Return whether a text is ``true`` in any letter case, or ``1``; all other texts are false."""
     return value.lower() in {"true", "1"}
 
 
 def is_false(value: str) -> bool:
-    """Return whether a text is one of OpenRAVE's two spellings of false."""
+    """Return whether a text is ``false`` in any letter case, or ``0``."""
     return value.lower() in {"false", "0"}
 
 

@@ -62,8 +62,8 @@ class Floor(NamedTuple):
 class FloorLevel:
     """Determines height and size of a model's floor.
 
-    They are computed from the configuration in the file, so that the floor does not move with the bodies; only geoms
-    below it lower it.
+    They are computed from the configuration in the file, so that the floor does not move with the bodies; it is lowered
+    only if geoms are below it.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:

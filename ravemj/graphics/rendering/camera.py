@@ -24,7 +24,7 @@ DEFAULT_FOVY = math.radians(45)
 """Vertical field of view of OpenRAVE's viewers [rad]."""
 
 RIGIDITY_TOLERANCE = 5e-3
-"""Tolerance of R^T R for a rotation, for matrices printed with three digits, but not for scaled ones."""
+"""Tolerance of R^T R - I: it accepts rotation matrices printed with three digits, but not scaled ones."""
 
 _SHAPES = "a 4x4 matrix, a 3x4 matrix or a pose [w, x, y, z, tx, ty, tz]"
 

@@ -17,7 +17,7 @@ DRAWN_GROUPS = np.array([1, 1, 1, 0, 0, 0], dtype=np.uint8)
 """Geom groups that a default ``mjvOption`` draws: 0, 1 and 2."""
 
 COLLISION_GROUPS = np.array([1, 0, 0, 1, 0, 0], dtype=np.uint8)
-"""Geom groups of collision geometry: group 2 is visual only, group 3 collision only."""
+"""Mask of the geom groups of collision geometry: 0 (drawn, too) and 3 (collision only); group 2 is visual only."""
 
 _UNSET_RGBA = (0.5, 0.5, 0.5, 1.0)  # MuJoCo's default, which means that no colour is set
 _TINT = np.array([0.3, 0.6, 1.0])

@@ -37,7 +37,7 @@ class TriangleMesh(NamedTuple):
 
 
 class MeshInstance(NamedTuple):
-    """Instance of a mesh on a body, for a geom, by their indices."""
+    """Instance of a mesh on a body, made for a geom; mesh, body and geom are given by index."""
 
     mesh: int
     body: int

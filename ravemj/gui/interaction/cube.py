@@ -113,7 +113,7 @@ class Cube:
         return points @ self.T_world_cube[:3, :3].T + self.T_world_cube[:3, 3]
 
     def primitives(self) -> Primitives:
-        """Return the drawing of the cube, in the world."""
+        """Return the drawing of the box handle, in the world."""
         ends = np.concatenate([edge.ends for edge in self._edges()])
         lines = drawing.line_list(ends, _EDGE_WIDTH, np.repeat(_EDGES, len(ends), axis=0))
         return drawing.merge([drawing.box(np.zeros(3), self.half, _FACES), lines]).placed(self.T_world_cube)

@@ -30,7 +30,7 @@ class _Text(NamedTuple):
 
 
 class HelpLayout(NamedTuple):
-    """Rectangle of the help, its maximum first row, and its panels."""
+    """Rectangle of the help, maximum index of its first visible row, and its panels."""
 
     rect: Rect
     last_row: int

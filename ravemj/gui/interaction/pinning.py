@@ -96,5 +96,5 @@ class PinnedReach(Reach):
                     self._notices.say(line, _TOLD)
 
     def ghosts(self) -> Primitives:
-        """Return no drawings, since the other solutions are infinitely many."""
+        """Return no drawings of other IK solutions, since there are infinitely many."""
         return NOTHING

@@ -73,7 +73,7 @@ class Recorder:
     def record(
         self, source: FrameSource, playback: Playback, deliver: Callable[[str, bytes], None] | None = None
     ) -> None:
-        """Start a video, of the motion if there is one, else in real time; or stop the current video.
+        """Stop the current video or, if there is none, start one: of the motion if there is one, else in real time.
 
         Args:
             source: Renders the frames.

@@ -30,7 +30,7 @@ class Wrist:
 
     Attributes:
         centre: The point, shape (3, 1, 1).
-        side: A direction perpendicular to the last axis, shape (3, 1, 1); its required image determines the last joint.
+        side: A direction perpendicular to the last axis, shape (3, 1, 1); its rotation determines the last joint.
         phase: Cosine and sine of the middle joint at the smallest angle between the outer axes.
         gaps: 1 - cos of the smallest angle between the outer axes, and 1 + cos of the largest.
     """

@@ -83,7 +83,7 @@ class CarryPoint:
     def solve(self, screws: Screws, start: Floats, goal: Floats) -> list[Floats]:
         """Return the joint values, cosine and sine (2, B, N) or distances (1, B, N), that carry points (3, B, N).
 
-        Joints that are the same for all poses must be those of the examples in ``__init__``.
+        Screws that do not depend on the pose must be the same as in ``__init__``.
         """
         first, middle, third = screws
         one, three = self.pair.solve(*self._sides(screws, start, goal))
@@ -99,7 +99,7 @@ class CarryPoint:
 class CarryPlane:
     """Three joints that carry a plane to a plane: the remaining joints of an arm with three parallel axes.
 
-    With a prismatic joint among the three, the other two turn the normal, and the distance follows.
+    If one of the three is prismatic, the other two rotate the normal, and the prismatic one corrects the offset.
     """
 
     def __init__(self, screws: Screws, start: Plane, goal: Plane) -> None:

@@ -31,7 +31,7 @@ class Gantry:
         self.why = "three other joints give the orientation, and the place is linear in their values"
 
     def names(self) -> list[tuple[int, int]]:
-        """Return index and number of solutions of each joint with several; the fastest alternating one comes first."""
+        """Return index and number of solutions of each joint with several; the first varies fastest over branches."""
         return [(self.order[self.turning[joint]], count) for joint, count in self.wrist.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:

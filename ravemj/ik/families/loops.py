@@ -82,7 +82,7 @@ class Family(Protocol):
     shared: bool
 
     def names(self) -> list[tuple[int, int]]:
-        """Return index and number of solutions of each joint with several; the fastest alternating one comes first."""
+        """Return index and number of solutions of each joint with several; the first varies fastest over branches."""
         ...
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:
@@ -219,7 +219,7 @@ class BlockFamily:
         return points, (Plane(normals[0], points[0]), Plane(normals[1], points[1]))
 
     def names(self) -> list[tuple[int, int]]:
-        """Return index and number of solutions of each joint with several; the fastest alternating one comes first."""
+        """Return index and number of solutions of each joint with several; the first varies fastest over branches."""
         around = [(self.circle.places[joint], count) for joint, count in self.carry.names]
         return around + [(self.circle.block[joint], count) for joint, count in self.inside.names]
 
@@ -273,7 +273,7 @@ class PointFamily:
         return screws, _moved(seen, self.tool)
 
     def names(self) -> list[tuple[int, int]]:
-        """Return index and number of solutions of each joint with several; the fastest alternating one comes first."""
+        """Return index and number of solutions of each joint with several; the first varies fastest over branches."""
         return [(self.order[joint], count) for joint, count in self.carry.names]
 
     def solve(self, motion: Transform, locked: Locked) -> list[Floats]:

@@ -16,7 +16,7 @@ Vector = tuple[float, float, float]
 Turn = tuple[float, float]
 """Cosine and sine of an angle."""
 Motion = tuple[Vector, Vector, Vector, Vector]
-"""Rotation by rows, and translation."""
+"""Rotation matrix as three rows, and translation."""
 
 
 class OnePose:

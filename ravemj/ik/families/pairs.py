@@ -20,7 +20,7 @@ NEGLIGIBLE = 1e-9
 
 
 class Side(NamedTuple):
-    """Two invariants of one side: constant + factors · (cos, sin) of its joint, or factors · (value, value²).
+    """Both invariants on one side of the equations: constant + factors · (cos, sin) or factors · (value, value²).
 
     Attributes:
         constant: Constants of both equations, shape (2, B, N).

@@ -46,7 +46,10 @@ def families(nominal: Chain, task: Task, locked: Sequence[int]) -> Iterator[Fami
 
 
 def general_families(nominal: Chain, locked: Sequence[int]) -> Iterator[Family]:
-    """Yield methods that solve an arm of revolute joints by an eigenvalue problem, a hundred times slower."""
+    """Yield methods that solve an arm of revolute joints by an eigenvalue problem.
+
+    They are a hundred times slower than those of ``families``.
+    """
     whole = next(_complete(_arm(nominal, locked), 6 - nominal.dof + len(locked)), None)
     for backward in (False, True):
         for shift in range(6):

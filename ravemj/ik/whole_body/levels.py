@@ -79,7 +79,7 @@ def minimise_levels(
 
 
 def squared(error: Floats) -> float:
-    """Return the squared length of an error, at most 1: the unit of damping (T. Sugihara, 2011)."""
+    """Return the squared length of an error, at most 1, to which damping is proportional (T. Sugihara, 2011)."""
     return min(float(error.dot(error)), 1.0)
 
 

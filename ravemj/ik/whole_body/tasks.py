@@ -19,7 +19,7 @@ class TaskRows(NamedTuple):
 
     Attributes:
         error: Goal minus present value, shape (m,).
-        jacobian: Derivative of the value by the displacements, shape (m, n).
+        jacobian: Derivative of the value with respect to the displacements, shape (m, n).
         is_identity: Whether the Jacobian is the identity, for the first m variables.
     """
 

@@ -120,10 +120,10 @@ def epsilon(positions: ArrayLike, normals: ArrayLike, friction: float, edges: in
 def quality(
     positions: ArrayLike, normals: ArrayLike, friction: float, center: Floats, radius: float, edges: int = EDGES
 ) -> Resistance:
-    """Return the resistance with torques about the centre of mass, divided by the object's radius.
+    """Return the resistance computed with torques about the centre of mass that are divided by the object's radius.
 
-    It does not change if the object moves or is scaled, so grasps of different objects can be compared. The torque part
-    of ``direction`` has the same scale.
+    It does not change if the object moves or is scaled, so grasps of different objects can be compared. The torques in
+    ``direction`` are divided by the radius, too.
 
     Args:
         positions: Contact points, shape (n, 3) [m].

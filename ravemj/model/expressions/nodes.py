@@ -128,7 +128,7 @@ def ordered(root: Node) -> list[Node]:
 def steps(nodes: list[Node], most_nested: int) -> list[Node]:
     """Choose the calls to evaluate in sequence, so that no node is evaluated twice; the last is the root.
 
-    The steps are calls with several users, and some within deep nesting. Trees between steps have at most
+    These are the calls that several nodes use, and some within deep nesting. Trees between them have at most
     ``most_nested`` levels, so that recursion is safe. ``nodes`` is the result of ``ordered``.
     """
     users = dict.fromkeys(nodes, 0)

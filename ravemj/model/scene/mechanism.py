@@ -22,7 +22,7 @@ AXES: dict[JointKind, str] = {
     "pr": "RP",
     "pp": "PP",
 }
-"""Axes of each joint kind, R revolute or P prismatic, the carrying axis first (last in the names ``rp`` and ``pr``)."""
+"""Axes of each joint kind (R revolute, P prismatic), the axis nearer to the parent first; last in ``rp``, ``pr``."""
 
 OWN_SHAPES = "self"
 """Name of the group of a link's own shapes, stored while another group replaces them."""

@@ -87,7 +87,7 @@ class Segment(NamedTuple):
 
 
 class SegmentRows(NamedTuple):
-    """Rows of a timed segment: intermediate states and its end.
+    """States of a timed segment in rows: intermediate states, and its end.
 
     Attributes:
         times: Times of the rows since the start of the segment [s], shape (m,).
@@ -99,7 +99,7 @@ class SegmentRows(NamedTuple):
 
 
 class Interpolated(Protocol):
-    """Interpolation between the rows of a timed path, and its number of derivatives."""
+    """Name of the interpolation between the rows of a timed path, and its number of derivatives."""
 
     interpolation: str
     order: int

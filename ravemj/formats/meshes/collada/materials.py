@@ -18,7 +18,7 @@ class ColladaMaterial:
         ambient: Ambient colour.
         textured: Whether the diffuse colour is a texture.
         transparency: The number in ``<transparency>``, which some writers invert.
-        transparent: The red, green, blue and alpha that it multiplies.
+        transparent: Red, green, blue and alpha in ``<transparent>``, which ``transparency`` multiplies.
         opaque: Interpretation of ``transparent``: ``A_ONE`` by default.
         is_phong: True if the shader is a ``<phong>``.
         alpha: Fourth number of the diffuse colour of a ``<phong>``, else of the ambient colour; 1 by default.

@@ -42,7 +42,7 @@ class TraversalState:
 
 
 Material = tuple[Rgb, Rgb, float]
-"""Diffuse and ambient colour and transparency; of several materials of faces the first, as in OpenRAVE."""
+"""Diffuse and ambient colour and transparency. If faces have several materials, the first is used, as in OpenRAVE."""
 
 
 Handler = Callable[["Traversal", InventorNode, TraversalState], TraversalState]
@@ -85,7 +85,7 @@ class Traversal:
         return self.visit(nodes, state)
 
     def visit(self, nodes: Iterable[InventorNode], state: TraversalState) -> TraversalState:
-        """Traverse nodes in order; of an unknown node only the children."""
+        """Traverse nodes in order. For an unknown node, only its children are traversed."""
         self._levels += 1
         for node in nodes:
             self._visits += 1

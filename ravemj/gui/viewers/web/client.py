@@ -78,7 +78,7 @@ class Client:
         interaction: Interaction and viewpoint of the page.
         chunks: Received chunks of files that were dropped on the page.
         tab: Name of the view; a page that reconnects with this name gets the view again.
-        updates: Number of times the page was known to be up to date.
+        updates: Counter, increased whenever the page is found or made up to date.
     """
 
     def __init__(
