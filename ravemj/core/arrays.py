@@ -184,7 +184,8 @@ def checked_whole_numbers(numbers: "ArrayLike | None", name: str) -> Ints:
 def checked_transform(transform: ArrayLike, name: str) -> Floats:
     """Return a rigid transform as a 4x4 matrix; the input is 4x4, 3x4, or a pose [w, x, y, z, tx, ty, tz].
 
-    As in OpenRAVE, quaternions are normalized, and scale factors of rotations are removed.
+    As in OpenRAVE, quaternions are normalized, and a scaled rotation matrix is converted to a quaternion and back,
+    which may give another rotation.
 
     Raises:
         ValueError: it has another shape; OpenRAVE raises this error, too.
