@@ -40,7 +40,7 @@ class RootSource(Protocol):
     """Protocol of a source of starts or goals."""
 
     def first(self, refuse: Refuse, random: np.random.Generator, *, enough: int) -> list[Floats]:
-        """Restart with new random numbers, and return at least ``enough`` initial roots."""
+        """Restart with new random numbers, and return initial roots, at least ``enough`` if they are found in time."""
         ...
 
     def next(self, refuse: Refuse) -> Floats | None:
