@@ -115,10 +115,10 @@ class MovedTool:
 
     @classmethod
     def for_arm(cls, bodies: Bodies, arm: Manipulator, *, gripper: bool = False) -> "MovedTool":
-        """Return the tool of the only body that moves.
+        """Return the tool of an arm of the robot that moves.
 
         Args:
-            bodies: The body.
+            bodies: The robot, as the only body that moves.
             arm: The manipulator.
             gripper: Whether joints of the gripper may move as well.
 

@@ -7,7 +7,7 @@ from ravemj.model.scene import KinBody
 
 
 def mimic_texts(body: KinBody) -> list[dict[str, str]]:
-    """Return for each joint, active ones first, its equation and partial derivatives by type.
+    """Return for each joint, active ones first, its mimic equation (``follows``) and its partial derivatives.
 
     Joints that are not mimic joints have none.
     """

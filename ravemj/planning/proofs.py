@@ -303,7 +303,7 @@ def _find_smallest_gap(spaces: Spaces, every: Sequence[_Examined], proof: Proof)
 
 
 def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
-    """Return the intervals that refinement may subdivide, those with the least bounds, and the next larger bound."""
+    """Return the intervals with the least bounds, which refinement may subdivide, and the least bound of the others."""
     most, proved = _REFINEMENTS * _REFINED, list[_Proved]()
     for (times, control), cases, _, bounds, _ in every:
         least = np.full(len(times), np.inf)

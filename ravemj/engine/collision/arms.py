@@ -20,7 +20,7 @@ def end_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator) -> 
 
 
 def independent_and_others(world: CollisionWorld, body: BodyState, arm: Manipulator) -> Pairs:
-    """Return the pairs of (links that neither arm nor gripper moves, and bodies they hold) and (other bodies)."""
+    """Return the pairs of the links that neither arm nor gripper moves, with bodies they hold, and all other bodies."""
     return body_and_others(world, body, frozenset(independent_links(body.scene, arm)))
 
 

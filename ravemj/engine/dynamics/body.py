@@ -334,7 +334,7 @@ class BodyDynamics:
         mujoco.mj_comVel(self._model, self._data)
 
     def _set_joint_velocities(self) -> None:
-        """Write the joint velocities, and the accelerations of coupled joints at constant DOF velocities."""
+        """Write the joint velocities, and the accelerations of coupled joints if the DOF velocities stay constant."""
         if self._coupling_matrix is not None:
             self._coupling_matrix.dot(self._rates, self._qvel)
             return

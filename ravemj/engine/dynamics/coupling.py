@@ -84,7 +84,7 @@ class CouplingMap:
         return tree.of_qpos[places[0]] if places else NO_QPOS
 
     def at(self, values: Floats, *, second: bool = True) -> Coupling:
-        """Return P and, if ``second``, its derivative at joint values [rad or m], shape (dof,) or (dof, N)."""
+        """Return the coupling at joint values [rad or m], (dof,) or (dof, N); with its derivative if ``second``."""
         return self.constant or self._at(values, second=second)
 
     def _at(self, values: Floats, *, second: bool) -> Coupling:

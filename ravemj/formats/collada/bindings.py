@@ -65,7 +65,7 @@ class Bindings:
             self._of_axis.setdefault(axis.axis, []).append(axis)
 
     def node_of(self, owner: Element, instance: Element, model: Element) -> Node | None:
-        """Return the node that shows an instance of a model; ``owner`` is its instance in the kinematics scene."""
+        """Return the scene node that shows an instance of a kinematics model, preferably as bound by ``owner``."""
         numbers = {number for element in (instance, model) for number in self._of_instance.get(element, ())}
         bound = [self.models[number] for number in sorted(numbers)]
         own = [binding for binding in bound if binding.owner is owner]

@@ -68,8 +68,8 @@ def _form(mesh: Mesh) -> CollisionForm:
 def _is_plainly_solid(mesh: Mesh) -> bool:
     """Return True if a sample of triangles proves that the mesh has a volume; False is inconclusive.
 
-    The thickness of a mesh in any direction is at least twice the standard deviation of a sample of its points; its
-    length is at most the diagonal of a box around it and the origin.
+    The thickness of a mesh in any direction is at least twice the standard deviation of a sample of its points. It must
+    exceed a small part of the mesh's length, which is at most the diagonal of a box around mesh and origin.
     """
     corners = mesh.vertices[mesh.triangles[:: len(mesh.triangles) // _SAMPLE + 1]]
     if not len(corners) or _area(corners) <= _MIN_AREA:

@@ -100,10 +100,10 @@ class OnePose:
         return turns_found
 
     def _numbers(self, line: tuple[Vector, Vector], point: Vector, sign: float) -> tuple[Turn, tuple[Turn, Turn]]:
-        """Return constants and factors of the middle joint's invariants for a point moved by the first or third joint.
+        """Return the two quantities that the middle joint leaves unchanged as functions of the first or third joint.
 
-        Each invariant is constant + factors · (cos, sin) of the moving joint. If ``sign`` is -1, the joint moves
-        backwards.
+        They are those of ``point``, which this joint moves; each is constant + factors · (cos, sin) of its angle. If
+        ``sign`` is -1, the joint moves backwards.
         """
         axis, at = line
         one, centre = self._measure

@@ -218,7 +218,7 @@ class _Called:
 
 
 def _calls(prefix: str, fields: Mapping[str, object]) -> Iterator[tuple[str, object]]:
-    """Yield name and value of the fields ``id`` and ``name`` unless empty; ``prefix`` precedes their keys."""
+    """Yield the fields ``id`` and ``name`` that are not empty; in ``fields``, ``prefix`` precedes these keys."""
     for name in ("id", "name"):
         value = fields.get(prefix + name)
         if value and isinstance(value, str):

@@ -273,7 +273,7 @@ class PlannerParameters(ApiObject):
             holding: A body grabbed by the tool; this body, not the tool, must reach the regions.
 
         Raises:
-            ArgumentError: the list is empty, a length of a region has no bounds, or other joints move.
+            ArgumentError: the list is empty, a position component of a region has no bounds, or other joints move.
         """
         self.given.goal_sampler = self._sampler(sample, probability, holding, "set_goal_sampler: sample")
 
