@@ -19,7 +19,7 @@ class ControlPanel:
     """
 
     def __init__(self, controls: Controls, *, is_drawn: bool = True) -> None:
-        """Start unscrolled; unless ``is_drawn``, the shell has controls of its own and the layout stays empty."""
+        """Start unscrolled. If ``is_drawn`` is False, as for pages, whose controls are HTML, the layout stays empty."""
         self.controls = controls
         self._is_drawn = is_drawn
         self._first_row = 0.0

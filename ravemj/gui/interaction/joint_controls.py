@@ -13,7 +13,7 @@ from ravemj.gui.interaction.joint_handle import joint_and_axis
 from ravemj.model.limits import clamp
 
 _WIDEST = {True: (1.0, "m"), False: (math.pi, "rad")}
-"""Half the slider range and its unit for joints with much wider limits; the key tells whether they are prismatic."""
+"""Half the slider range and its unit, for joints with much wider limits; key: whether the joint is prismatic."""
 
 _MUCH = 4.0
 """Factor of ``_WIDEST`` above which joint limits are much wider."""

@@ -1,4 +1,4 @@
-"""OpenRAVE's mode buttons and camera wheels, as rectangles that every shell can draw."""
+"""OpenRAVE's mode buttons and camera wheels, as rectangles that windows and pages draw."""
 
 from enum import Enum
 from typing import NamedTuple

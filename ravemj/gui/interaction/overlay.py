@@ -20,12 +20,12 @@ class Label(NamedTuple):
 
 
 class Overlay(NamedTuple):
-    """Everything that a shell draws over the bodies.
+    """Everything that a window or page draws over the bodies.
 
     Attributes:
         primitives: Drawings in the world.
         lines: Lines of text in the top left corner.
-        panels: Buttons, wheels and sliders, for a shell without controls of its own.
+        panels: Buttons, wheels and sliders, for windows; pages have controls of their own.
         controls: Buttons and sliders as plain data, except for mode buttons and wheels.
         labels: Texts in the world.
         help: Sections of the help while it is open.
@@ -34,7 +34,7 @@ class Overlay(NamedTuple):
         style: Drawing style of the bodies.
         cursor: Shape of the pointer: ``default``, ``grab`` for a view that can be turned, ``pointer`` for a button or
             a clickable link, ``move`` for a handle, ``text`` for a text field.
-        text_size: Height of the letters of the lines [points]; None: the default of the shell.
+        text_size: Height of the letters of the lines [points]; None: the default of the window or page.
     """
 
     primitives: Primitives

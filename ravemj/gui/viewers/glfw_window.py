@@ -17,7 +17,7 @@ _dispatching = threading.Lock()
 
 
 _FRAME = 40
-"""Height of a window's frame, in units of the screen."""
+"""Height of a window's frame, in GLFW's screen coordinates."""
 
 
 class GlfwWindow:
@@ -26,14 +26,14 @@ class GlfwWindow:
     Attributes:
         events: Input events; the user of the window clears the list.
         dropped: Paths of files dropped on it; the user of the window clears the list.
-        size: Width and height, in units of the screen.
+        size: Width and height, in GLFW's screen coordinates.
         pixels: Width and height of the framebuffer [pixels]; 0 while the window is minimised.
         pixel_ratio: Pixels per point: 1, or more on high-density screens.
         is_lost: Whether its content is lost and must be redrawn.
     """
 
     def __init__(self, title: str, width: int, height: int) -> None:
-        """Open a window of a size in units of the screen.
+        """Open a window of a size in GLFW's screen coordinates.
 
         Raises:
             RenderingError: there is no display, or it has no OpenGL.
@@ -183,7 +183,7 @@ class GlfwWindow:
         return x * columns / width, y * rows / height
 
     def call(self, function: str, *arguments: object) -> None:
-        """Call a GLFW function such as ``set_window_title`` with this window; sizes are in units of the screen."""
+        """Call a GLFW function such as ``set_window_title`` with this window; sizes are in screen coordinates."""
         getattr(self._glfw, function)(self._window, *arguments)
 
     def set_background(self, rgb: tuple[int, int, int]) -> None:

@@ -37,7 +37,7 @@ def period(unchanged: float) -> float:
 
 
 class Level(NamedTuple):
-    """A quality level: resolution relative to the view's, samples per pixel, and drawing time relative to ``CRISP``."""
+    """A quality level: resolution relative to the view's, samples per pixel, drawing time relative to full quality."""
 
     scale: float
     samples: int

@@ -159,11 +159,14 @@ class Viewer(Interactive):
             notices.say(line, math.inf)
 
     def RegisterCallback(self, properties: object, callback: Callback) -> Handle:
-        """Return a handle of a registered callback; deprecated form of ``RegisterItemSelectionCallback``.
+        """Register a callback for selections; deprecated form of ``RegisterItemSelectionCallback``.
 
         Args:
             properties: Not used.
-            callback: See ``RegisterItemSelectionCallback``.
+            callback: A function of the link, the clicked point and the direction from the eye to it.
+
+        Returns:
+            A handle; closing or dropping it unregisters the function.
         """
         del properties
         return self.RegisterItemSelectionCallback(callback)

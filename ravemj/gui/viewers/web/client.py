@@ -78,7 +78,7 @@ class Client:
         interaction: Interaction and viewpoint of the page.
         chunks: Received chunks of files that were dropped on the page.
         tab: Name of the view; a page that reconnects with this name gets the view again.
-        updates: Counter, increased whenever the page is found or made up to date.
+        updates: Counter, increased whenever the page is known to show the current state of the bodies.
     """
 
     def __init__(
@@ -166,8 +166,13 @@ class Client:
     def handle_messages(self, connection: Connection, style: PageStyle, *, is_watched: bool = False) -> Frame | None:
         """Handle the queued events; send an update if the page is ready and the view changed or came to rest.
 
+        Args:
+            connection: Connection to the page.
+            style: Appearance of the page.
+            is_watched: Whether a picture is also needed if the page renders the scene itself, as for image callbacks.
+
         Returns:
-            The picture of the page. None if nothing was sent, or the page renders itself and ``is_watched`` is False.
+            The picture, or None if nothing was sent or no picture is needed.
         """
         try:
             update = self._update_if_due(style)

@@ -57,7 +57,7 @@ class Scenes:
             return scene
 
     def level(self, model: mujoco.MjModel) -> FloorLevel:
-        """Return the floor detector of a model."""
+        """Return the object that computes height and size of a model's floor."""
         with self._lock:
             if self._level is None or self._level.model is not model:
                 self._level = FloorLevel(model)
