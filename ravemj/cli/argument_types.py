@@ -42,7 +42,7 @@ def vector(text: str) -> list[float]:
 
 
 def limb_goal(text: str) -> tuple[str, list[float]]:
-    """Parse a name, an equals sign and numbers."""
+    """Parse the goal of a limb: ``NAME=x,y,z``, or with a quaternion ``NAME=x,y,z,qw,qx,qy,qz``."""
     name, equals, numbers = text.rpartition("=")
     if not (equals and name.strip() and numbers.strip()):
         raise argparse.ArgumentTypeError(f"'{text}' is not NAME=x,y,z or NAME=x,y,z,qw,qx,qy,qz")

@@ -130,14 +130,17 @@ def start_values(path: str, robot: Robot) -> list[float]:
 
 
 def reached(arm: Manipulator, goal: ArrayLike, kind: IkParameterizationType) -> list[tuple[Floats, str]]:
-    """Return the IK solutions of a goal and their branches, nearest to the present values first."""
+    """Return each IK solution of a goal with the name of its IK branch, nearest to the present joint values first."""
     from ravemj.ik.candidates import ranked  # noqa: PLC0415 - slow to import
 
     return ranked(arm.ik_solver(kind), arm.goals_in_base(goal, kind)[0], arm.GetArmDOFValues())
 
 
 def validated(arm: Manipulator, ways: Sequence[tuple[Floats, str]]) -> list[Solution]:
-    """Check solutions for joint limits and collisions of the arm; contacts between other parts are ignored."""
+    """Check IK solutions, with the names of their branches, for joint limits and collisions of the arm.
+
+    Contacts that do not involve the arm are ignored.
+    """
     env, groups = arm.GetRobot().GetEnv(), body_groups(arm.GetRobot().GetName(), arm.description.arm_dofs, 0, "")
     bodies = Bodies(env.simulation, groups, env.GetCollisionChecker)
     with bodies.kept():

@@ -1,4 +1,4 @@
-"""All diagnostics of a model file: of the reader, of the translation, and further checks."""
+"""Collection of all diagnostics of a model file: of reading, of the translation to MJCF, and of further checks."""
 
 import os
 import warnings
@@ -13,7 +13,7 @@ from ravemj.model.scene import KinBody
 from ravemj.rave import load
 
 FATAL_CODES = {"bad-number"}
-"""Codes of diagnostics that OpenRAVE tolerates and commands reject: the number read is not the intended one."""
+"""Codes of diagnostics that commands treat as errors, although OpenRAVE tolerates them: a number was misread."""
 
 
 def check(path: str | os.PathLike[str], given: Mapping[str, str] | None = None) -> list[Diagnostic]:
@@ -21,7 +21,7 @@ def check(path: str | os.PathLike[str], given: Mapping[str, str] | None = None) 
 
     Args:
         path: A model file. Its mistakes become diagnostics, never exceptions.
-        given: Attributes for its body; see ``Environment.Load``.
+        given: Attributes by name that override the file's, such as ``prefix``; those of ``Environment.Load``.
 
     Example:
         >>> from ravemj.cli.checking import check

@@ -15,7 +15,7 @@ _LONGEST = 60
 
 
 def diff(options: argparse.Namespace) -> int:
-    """Compare two models by their numbers; return 1 if they differ, and 2 if one cannot be read."""
+    """Compare two models numerically; return 1 if they differ, and 2 if one cannot be read."""
     try:
         first, second = (_scene(model) for model in (options.first, options.second))
     except RavemjError as error:

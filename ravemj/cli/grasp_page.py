@@ -1,4 +1,4 @@
-"""Page of ``grasp``: hands side by side approach their targets and close; contacts are drawn.
+"""HTML page of ``grasp``: hands side by side approach their targets and close; contacts are drawn.
 
 If the arm reaches the grasps, a copy of the whole robot behind them shows the best one.
 """
@@ -60,7 +60,7 @@ class _DrawnArm(NamedTuple):
 
 
 def write_grasps(path: str, arm: Manipulator, target: KinBody, grasps: Sequence[Grasp], notes: Sequence[str]) -> None:
-    """Write a page with a hand for each grasp, from left to right; the second row is nearer to the camera."""
+    """Write a page with a hand for each grasp, in rows from left to right; later rows are nearer to the camera."""
     env = Environment()
     env.SetViewer("offscreen")  # which keeps drawings
     spacing, rows = 1.3 * _reach(arm, target), -(-len(grasps) // _COLUMNS)

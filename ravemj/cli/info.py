@@ -73,7 +73,7 @@ class _KinematicTree:
                 yield f"{joint.name} closes a loop between {' and '.join(_ends(self._body, joint))}"
 
     def _entry(self, index: int, first: str, rest: str) -> Iterator[str]:
-        """Yield a link and its joint in one or two lines, which start with the branches ``first`` and ``rest``."""
+        """Yield a link and its joint in one or two lines, which start with the tree lines ``first`` and ``rest``."""
         link = self._body.links[index]
         name = f"{first}{link.name}  {_number(link.inertial.mass)} kg{', static' if link.static else ''}"
         number = self._placing.get(index)

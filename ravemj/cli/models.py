@@ -134,7 +134,10 @@ def model_file(name: str, *, download: bool = False) -> str:
 
 
 def xacro_arguments(name: str, own: str) -> dict[str, str]:
-    """Return the xacro arguments of a packaged robot, followed by the user's ``own``, as an attribute."""
+    """Return the xacro arguments of a packaged robot, then the user's ``own``, as the attribute ``args`` of ``load``.
+
+    The result is empty for other models, and for robots without arguments.
+    """
     if os.path.exists(name) or not is_robot_name(name):
         return {}
     words = [f"{key}:={value}" for key, value in robot_file(name).arguments.items()]

@@ -25,7 +25,7 @@ from ravemj.model.comparison import MESH_TOLERANCE, TOLERANCE
 
 
 def make_parser() -> argparse.ArgumentParser:
-    """Return the parser of the whole command line; the attribute ``run`` of its result is the command's function."""
+    """Return the parser of the whole command line; parsed arguments have the command's function as ``run``."""
     from ravemj import __version__  # noqa: PLC0415 - ravemj is being imported when this module is
 
     parser = Parser(

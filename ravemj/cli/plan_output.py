@@ -50,10 +50,10 @@ class Plan(NamedTuple):
         robot: The robot.
         arm: Its moving manipulator, or None.
         dofs: DOF indices of the moving joints.
-        params: The problem.
+        params: Parameters of the planner, with start and goal.
         goals: Goal configurations, shape (n, len(dofs)).
         search: Statistics of the search; None if no search was needed.
-        motion: The motion of all DOFs, or None.
+        motion: The motion of all DOFs; None if none was found.
         points: The motion for a robot controller; None if it was not requested.
         certificate: Certificate of the motion; None if it was not requested.
         notes: Lines of text about the search.

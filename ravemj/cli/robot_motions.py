@@ -63,7 +63,7 @@ def set_accelerations(robot: Robot, limits: Sequence[float] | None) -> None:
 
 
 def write_points(robot: Robot, points: JointTrajectory, options: argparse.Namespace, notes: Sequence[str] = ()) -> None:
-    """Write checked points with the robot's joint names, and report assumptions."""
+    """Write checked trajectory points with the robot's joint names; print the acceleration limits that were assumed."""
     dof_names = robot.simulation_state.scene.dof_names
     moved = Joints(robot.simulation_state, [dof_names.index(name) for name in points.joint_names])
     write_joint_trajectory(options.output, points.renamed(robot_names(options.rename, robot)), notes)
@@ -83,7 +83,7 @@ def motion_file(env: Environment, options: argparse.Namespace) -> MotionFile:
 
 
 def export(env: Environment, motion: MotionFile, options: argparse.Namespace) -> None:
-    """Write a motion for a robot controller. If it is a table, only the joints that it names are written.
+    """Write a motion for a robot controller. A table of joint values moves only the joints that it names.
 
     Raises:
         ArgumentError: the motion fails a check.
