@@ -14,7 +14,7 @@ Arguments: TypeAlias = tuple[object, ...]
 Function: TypeAlias = Callable[..., object]
 
 Kind = Literal["number", "vector", "position", "rotation", "pose", "quaternion", "direction", "joint values", "boolean"]
-"""Meaning of an answer, by which mistakes are recognized: positions [m], frames (3, 3) and (4, 4), wxyz, angles."""
+"""Kind of an answer, by which mistakes are recognized: such as a position [m], a pose (4, 4), a quaternion wxyz."""
 
 _POINTS = {"position", "joint values"}
 
@@ -28,7 +28,8 @@ class Scene:
 
     Attributes:
         model: File or shipped name of a model with one robot; "" for none.
-        values: Joint values of the robot [rad or m]; None if the answer is joint values.
+        values: Joint values of the robot [rad or m]. None: the values of the model, or the answer if it is joint
+            values.
         frame: Name of the link whose frame the answer refers to; "" for the world.
         line: Points of a line [m], such as the links of an arm, each of two or three numbers.
     """
@@ -52,11 +53,11 @@ class Check:
         kind: Meaning of the answer.
         angles: Indices of the arguments that are angles [rad], which might be mistaken for degrees.
         mistakes: Further mistakes: a sentence that names the mistake, and a function that returns the wrong answer.
-        judge: Judges answers if several are right: called with the answer and the arguments, it returns None or the
-            error as a sentence. The answer is then an array of numbers, float32 if the student's was, with the
-            tolerance ``precision``.
-        any_length: Whether an answer may have any number of rows, as a path; otherwise the number is that of the
-            right answer.
+        judge: Judges answers if several are right: called with the answer, an array, and the arguments, it returns None
+            if the answer is right, else the error as a sentence. The array is float32 if the student's is, so that
+            ``precision`` gives its tolerance.
+        any_length: Whether an answer may have any number of rows, such as a path; otherwise it has as many as the right
+            answer.
         scene: Returns the content of a picture of the answer for given arguments; None if there is no picture.
         questions: Number of questions.
         tolerance: Maximum error of each number.

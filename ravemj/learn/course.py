@@ -102,7 +102,10 @@ def start(course: Course, folder: Path) -> list[Exercise]:
 
 
 def start_again(exercise: Exercise, folder: Path) -> Path | None:
-    """Restore an exercise in a folder; return the path of the student's renamed version, or None if there was none."""
+    """Restore the original file of an exercise in a folder.
+
+    If the folder has the student's version, this is renamed; return its new path, else None.
+    """
     own, kept = folder / exercise.original.name, None
     if own.exists():
         number = 1

@@ -112,7 +112,10 @@ def save_picture(check: Check, verdict: Verdict, output: Path) -> None:
 
 
 def _add_robots(env: Environment, scene: Scene, check: Check, given: Floats, right: Floats) -> Floats:
-    """Add a scene's robot and, if answers are joint values, a copy at the right ones; return the answer's frame."""
+    """Add the robot of a scene; return the world pose of the frame that the answer refers to.
+
+    If answers are joint values, a copy of the robot shows the right ones.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RavemjWarning)
         env.Load(model_path(scene.model) if scene.model in SHIPPED_MODELS else scene.model)
