@@ -123,12 +123,12 @@ class CollisionChecker(Interface):
         return self._options
 
     def SetTolerance(self, tolerance: float) -> None:
-        """Set the distance ``tolerance`` [m] of ``CollisionOptions.UseTolerance``."""
+        """Set the distance ``tolerance`` [m] below which ``report.numWithinTol`` counts geometry pairs."""
         self._tolerance = float(tolerance)
         self._choose()
 
     def GetTolerance(self) -> float:
-        """Return the distance [m] of ``CollisionOptions.UseTolerance``."""
+        """Return the distance [m] below which ``report.numWithinTol`` counts geometry pairs."""
         return self._tolerance
 
     def CheckCollision(self, *arguments: object, report: CollisionReport | None = None, **named: object) -> bool:
@@ -259,7 +259,7 @@ class CollisionChecker(Interface):
         return find(world, pairs, self._wanted, distance, counts)
 
     def report(self, findings: Findings) -> CollisionReport:
-        """Return a report of findings."""
+        """Return a collision report of the collisions and distances that ``find`` returned."""
         report = CollisionReport()
         report.Reset(self._options)
         self._fill(report, findings)

@@ -517,8 +517,8 @@ class MultiController(Controller):
             True.
 
         Raises:
-            ArgumentError: this controller does not move such a DOF, another controller has it, or another controller
-                moves the base.
+            ArgumentError: a DOF is not among those of the ``MultiController``, or is assigned already; or the base is
+                assigned already.
         """
         robot = self._robot
         dofs = checked_indices(dofindices, robot.GetDOF(), "dofindices")

@@ -70,7 +70,7 @@ def grasps(  # noqa: PLR0913 - keyword arguments
             after the other. ``antipodal`` places parallel jaws at pairs of opposite points of the surface, where the
             line between them lies inside both friction cones.
         friction: Friction coefficient of hand and body.
-        delta: Distance of the approach rays on the sides of the body's box [m].
+        delta: Spacing of the approach rays on the faces of the body's bounding box [m].
         rolls: Number of rotations of the hand about each approach, or about the line of each pair. The default is 4 for
             ``fly`` and 8 for ``antipodal``.
         reach: Whether the arm has to reach a grasp without collisions; False: only the hand is tested.

@@ -119,7 +119,7 @@ class FilteredSearch(ArmSearch):
 
     @block
     def moving(self) -> Generator[None]:
-        """Acquire the lock and make the arm's joints active; on leaving, restore both and the configuration."""
+        """Context manager that holds the lock and makes the arm's joints active; at the end, it restores the robot."""
         with super().moving():
             chosen = self._robot.active_choice
             try:

@@ -298,7 +298,7 @@ class Instrument:
         self._velocity, self._acceleration = other._velocity, other._acceleration
 
     def set_noise(self, deviation: float, seed: int | None) -> None:
-        """Add Gaussian noise to all further measurements."""
+        """Add Gaussian noise of a standard deviation, in the measured unit, to all further measurements."""
         self._deviation, self._random = deviation, np.random.default_rng(seed)
 
     def _noisy(self, numbers: Floats) -> Floats:

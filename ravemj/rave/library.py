@@ -25,7 +25,7 @@ def RaveInitialize(load_all_plugins: bool = True, level: int | None = None) -> i
 
     Args:
         load_all_plugins: Not used; there are no plugins.
-        level: As of ``RaveSetDebugLevel``; by default ``Info``.
+        level: A ``DebugLevel``; by default ``Info``.
 
     Returns:
         0 for success.

@@ -169,7 +169,7 @@ def RaveCreateSensorSystem(env: Environment, name: str) -> None:
 
     Args:
         env: The environment.
-        name: Its name.
+        name: The name of the sensor system.
     """
     asked_for(env, name, "RaveCreateSensorSystem")
     _LOG.warning("there is no sensor system '%s': ravemj has none", name)

@@ -135,7 +135,7 @@ class SpaceSampler(Interface):
         Args:
             type: The kind of numbers, a ``SampleDataType``.
             num: The number of points.
-            interval: As of ``SampleSequence``.
+            interval: Not used.
 
         Raises:
             openrave_exception: always (``NotImplemented``).

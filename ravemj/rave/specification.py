@@ -182,7 +182,7 @@ class ConfigurationData(ApiObject):
         Args:
             targetdata: Values in the target's layout; changed in place.
             targetspec: The layout of the target.
-            sourcedata: Values in this layout, shape (numpoints, dof).
+            sourcedata: Values in the layout of this specification, shape (numpoints, dof).
             numpoints: The number of configurations.
             env: The environment of the bodies.
         """

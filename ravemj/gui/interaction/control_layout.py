@@ -26,7 +26,7 @@ _CLOCK, _SPEED, _PASSED = 110.0, 44.0, 130.0
 _SHORTEST_TRACK = 80.0
 _JOINT_ROW, _NAME, _TRACK, _VALUE = 22.0, 180.0, 104.0, 84.0
 _NARROWEST = 0.2
-"""Minimum width of names and tracks on narrow views, as a fraction of their usual widths."""
+"""Minimum width of slider names and tracks on narrow views, as a fraction of their usual widths."""
 
 _LETTER = 6.9
 """Typical width of a letter [points]."""

@@ -459,7 +459,7 @@ class Contents(EnvironmentPart):
             arguments: One of these forms; by name they are ``body``, ``link``, ``body1``, ``body2``, ``link1``,
                 ``link2``, ``ray``, ``bodyexcluded``, ``linkexcluded``.
             report: Receives the collisions, in the detail of ``GetCollisionChecker().SetCollisionOptions``.
-            named: See ``arguments``.
+            named: The same arguments by name.
 
         Raises:
             openrave_exception: an argument is None (``Assert``) or has a wrong type (``InvalidArguments``), or one of

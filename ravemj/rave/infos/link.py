@@ -120,7 +120,7 @@ class LinkInfo(ParameterFields):
         )
 
     def adjacent(self, names: Sequence[str]) -> list[int]:
-        """Return the indices of the links that collision checks never test against this one."""
+        """Return the indices in ``names`` of the links that collision checks never test against this one."""
         return [names.index(name) for name in self._vForcedAdjacentLinks if name in names]
 
 

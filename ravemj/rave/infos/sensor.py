@@ -118,7 +118,7 @@ class LaserGeomData(SensorGeometry):
         max_angle: The last angle of a scan [rad], likewise.
         min_range: The minimum measured distance [m].
         max_range: The maximum measured distance [m].
-        resolution: The step of the angles [rad], likewise.
+        resolution: The step of the angles [rad], optionally with one about the second axis, which is not used.
         time_increment: Time between two measurements [s].
         time_scan: Time between two scans [s].
     """

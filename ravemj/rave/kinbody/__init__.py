@@ -206,8 +206,8 @@ class KinBody(BodyConfiguration, Interface):
 
         Args:
             body: The body to grab. It must be made for the same environment, but need not be in it.
-            grablink: The link of this body that grabs it.
-            linkstoignore: Further links of this body whose collisions with it are ignored.
+            grablink: The link of this body that grabs the other.
+            linkstoignore: Further links of this body whose collisions with the other are ignored.
             grabbedUserData: Not used; given together with ``linkstoignore``, as in OpenRAVE.
 
         Returns:

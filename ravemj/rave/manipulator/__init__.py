@@ -352,7 +352,7 @@ class Manipulator(ArmIk):
         return self._answer(find, report, target)
 
     def CheckIndependentCollision(self, report: CollisionReport | None = None) -> bool:
-        """Return whether the independent links and their grabbed bodies collide with other bodies.
+        """Return whether the links of ``GetIndependentLinks()`` and their grabbed bodies collide with other bodies.
 
         Args:
             report: Receives the collisions.

@@ -147,7 +147,7 @@ class Manipulation:
             postprocessing: The smoother and its parameters; by default OpenRAVE's.
             more: A source of further goals during planning.
             sets: Regions as goals, and constraints along the whole motion. If regions are among the constraints, the
-                motion is a smooth curve through many configurations that keep them.
+                motion is a smooth curve through many configurations in these regions.
 
         Raises:
             PlanningError: no motion was found; the message says why.
@@ -434,9 +434,9 @@ class BaseManipulation(Manipulation):
         indices: Sequence[int],
         options: UnsyncMotion,
     ) -> Trajectory:
-        """Return a motion of the active DOFs to where other joints can reach given values without collisions.
+        """Return a motion of the active DOFs to a configuration at which other joints can reach given values.
 
-        The other joints themselves are not moved.
+        Both motions are free of collisions; that of the other joints is not part of the result.
 
         Args:
             hand: The values for the other joints.

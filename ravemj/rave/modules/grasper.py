@@ -123,7 +123,7 @@ class Sweep(NamedTuple):
         start: Index of the first candidate.
         most: Maximum number of grasps; 0 means no limit.
         threshold: Minimum distance to the boundary of the wrench hull; None accepts all grasps.
-        tries: Number of grasps with noise that have to succeed.
+        tries: Number of repetitions with noise, all of which have to succeed and end close to one another.
         checkik: Whether the arm has to reach the grasp without collisions.
     """
 

@@ -73,7 +73,7 @@ class EndWaypoint:
         return way
 
     def join(self, way: Trajectory) -> int:
-        """Insert the segment into the trajectory; return the index after the last inserted waypoint."""
+        """Insert the timed segment ``way`` into the trajectory; return the index after the last inserted waypoint."""
         joined, behind = self._extension.joined(way.waypoints)
         self._traj.set_waypoints(joined)
         return behind

@@ -261,8 +261,8 @@ class PlannerParameters(ApiObject):
     def set_goal_sampler(self, sample: RootSets, probability: float = 0.1, *, holding: KinBody | None = None) -> None:
         """Set regions or a function as a source of goals, in addition to those of ``SetGoalConfig``.
 
-        All planners sample some configurations of the regions before planning; ``birrt`` also samples during planning:
-        all IK solutions of random poses in the regions. The problem must move the arm joints of the active manipulator,
+        All planners sample goals before planning, ``birrt`` also during planning. Goals in regions are all IK solutions
+        of random poses. The problem must move the arm joints of the active manipulator,
         and its gripper joints if regions have a ``preshape``.
 
         Args:

@@ -195,7 +195,7 @@ class Planner(Interface):
 
         Args:
             robot: Not used, since the problem names the bodies.
-            params: The problem; it is copied. Retimers and smoothers also accept its text.
+            params: The problem; it is copied. Retimers and smoothers also accept it as XML text.
             releasegil: Not used.
 
         Returns:

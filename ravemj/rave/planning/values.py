@@ -291,7 +291,10 @@ class Values:
                 raise ArgumentError(f"{name}: is {numbers.tolist()}, and should be {dof} numbers")
 
     def index_of(self, side: int, end: Floats) -> int:
-        """Return the index of a start (side 0) or goal (1): configurations are counted first, then regions."""
+        """Return the index of the start (``side`` 0) or goal (1) with the configuration ``end``; -1 if unknown.
+
+        Configurations are counted first, then regions.
+        """
         given = self.configurations("_vgoalconfig" if side else "_vinitialconfig")
         for number, configuration in enumerate(given):
             if np.abs(configuration - end).max() <= _SAME:

@@ -175,7 +175,7 @@ class Robot(ActiveDofs):
         """Return a motion as checked waypoints for the controller of a real robot.
 
         Every point is within the limits of values, velocities and accelerations, and the motion starts and ends at
-        rest. It does not check collisions. A grabbed body causes a warning, since the message does not contain it.
+        rest. It does not check collisions. A grabbed body causes a warning, since waypoints do not contain it.
 
         Args:
             trajectory: A trajectory of joints of this robot, which keeps its own times and derivatives; or a ``Motion``
@@ -221,7 +221,7 @@ class Robot(ActiveDofs):
                 only, else linear.
 
         Raises:
-            ArgumentError: this robot has no joint of a name.
+            ArgumentError: the points name a joint that the robot does not have.
 
         Example:
             >>> trajectory = robot.from_joint_trajectory(ravemj.read_joint_trajectory("motion.json"))

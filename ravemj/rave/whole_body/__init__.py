@@ -365,7 +365,7 @@ class WholeBodyIK(ApiObject):
     def add_posture(
         self, values: ArrayLike | None = None, *, weight: float = _POSTURE, priority: int = 1
     ) -> WholeBodyTask:
-        """Add a soft task for joint values, which results do not require to be met.
+        """Add a soft task that pulls joints towards values; ``converged`` does not depend on it.
 
         Args:
             values: Values of the active joints [rad or m], shape (n,); by default the present ones.

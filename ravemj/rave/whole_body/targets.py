@@ -1,4 +1,4 @@
-"""Frames and targets of whole-body tasks in the API, and their error rows."""
+"""Frames and targets of whole-body tasks in the API, and the errors with their Jacobians."""
 
 from collections.abc import Callable
 from difflib import get_close_matches
@@ -108,7 +108,7 @@ def target_of(robot: Robot, target: TargetLike, argument: str, *, rotation: bool
 
 
 def frame_rows(moving: Moving, number: int, direction: Floats, target: Callable[[], Target]) -> Callable[[], TaskRows]:
-    """Return a function that computes the error rows of a frame relative to a target."""
+    """Return a function that computes the error of a frame relative to a target, and its Jacobian."""
     pointing = Chain.of([[0.0, 0.0, 1.0]], [[0.0, 0.0, 0.0]], direction=direction)
 
     def measure() -> TaskRows:
