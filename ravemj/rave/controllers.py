@@ -360,7 +360,7 @@ class IdealController(Controller):
             robot.Grab(body, robot.GetLinks()[change.link])
 
     def _show(self, path: _Path, time: float, elapsed: float) -> None:
-        """Move the robot to the point of a path at a time [s] from its start; ``_place`` explains ``elapsed``."""
+        """Move the robot to the point of a path at a time [s]; ``elapsed`` is the duration of this motion [s]."""
         point = path.trajectory.Sample(time)
         T_world_base = None
         if path.moves_base:

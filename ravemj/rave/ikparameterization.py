@@ -249,7 +249,7 @@ class IkParameterizationData(GoalValues):
             raise TypeError(f"IkParameterization: value: {message}")
 
     def _check_type(self, type: IkParameterizationType | int | None) -> None:
-        """Check that the type given beside a goal is that of the goal."""
+        """Check that the type that a user gave together with a goal is the goal's type; None is accepted."""
         if type is not None and type != self._type:
             raise ArgumentError(f"type: is {_Type(type).name}, and the goal is of type {self._type.name}")
 

@@ -306,7 +306,7 @@ class IkSolver(Interface):
         return str(int(search is not None and search.is_repeated()))
 
     def _solution_indices(self, arguments: str) -> str:
-        """Raise an error: the indices number the branches of the C++ code that OpenRAVE's ikfast generates."""
+        """Raise an error: OpenRAVE's solution indices number branches of ikfast's C++ code, which ravemj lacks."""
         del arguments
         remedy = "solutions are told apart by their joint values: FindIKSolutions returns them all"
         raise UnsupportedError(f"GetSolutionIndices ({remedy})", "numbering of the branches of a solver")

@@ -136,7 +136,7 @@ class ViewerRecorder(Module):
         return ""
 
     def _codecs(self, arguments: str) -> str:
-        """List the formats."""
+        """List the video formats."""
         from ravemj.graphics.video import VIDEO_FORMATS  # noqa: PLC0415 - slow to import
 
         del arguments

@@ -110,8 +110,8 @@ class Loading(Description):
             filename: An OpenRAVE XML file with an environment, a robot, a kinbody or a sensor; a URDF, whose SRDF is
                 looked for beside it, or a xacro; a COLLADA file (``.dae``, ``.zae``); OpenRAVE's JSON (``.json``, see
                 ``LoadJSON``); or a mesh file. Relative paths are searched in the working folder, then in the folders of
-                the environment variable ``OPENRAVE_DATA``. The manual's page "Which files a model may read"
-                lists the files that it may refer to.
+                the environment variable ``OPENRAVE_DATA``. The manual's page "Which files a model may read" lists the
+                files that it may refer to.
             atts: Attributes as those of a ``<Robot>``: ``name`` replaces the name of the body, ``prefix`` is put before
                 the names of its parts, ``skipgeometry`` "1" leaves out its shapes, ``scalegeometry`` ("2" or "2 3 4")
                 multiplies its lengths, except the sizes of boxes, spheres and cylinders of XML. Attributes apply to
@@ -345,7 +345,7 @@ class Loading(Description):
             return None
 
     def _body_of_json(self, path: str, into: KinBody | None, *, is_robot: bool) -> KinBody:
-        """Return the first body of a file without adding it; ``into`` is a body to rebuild, or None."""
+        """Return the first body of a JSON file without adding it: rebuild the body ``into`` or, if None, make one."""
         content = self._json_content(path)
         info = EnvironmentBaseInfo()
         with placed_errors(path):

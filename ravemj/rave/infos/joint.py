@@ -408,7 +408,7 @@ _DEFAULTS = {
 
 
 _REPORTED = {"max_torque": "own_torque"}
-"""Axis attribute that infos read instead of another: torque limits exclude the motor, which has its own info."""
+"""Substitute attributes of axes for infos: the torque limit without the motor, which has an info of its own."""
 
 
 def _motor_of(axis: scene.Axis, *, is_slider: bool) -> ElectricMotorActuatorInfo | None:

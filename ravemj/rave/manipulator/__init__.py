@@ -36,7 +36,7 @@ Target = ArrayLike | IkParameterization | CollisionReport | None
 
 
 def _sorted_out(transform: Target, report: CollisionReport | None) -> tuple[Floats | None, CollisionReport | None]:
-    """Return tool pose and report, either of which may be the first argument; the pose is None if not given."""
+    """Return tool pose (None if not given) and report; a report may also be given as the first argument."""
     if isinstance(transform, IkParameterization):
         return transform.GetTransform6D(), report
     if transform is None or isinstance(transform, CollisionReport):

@@ -208,7 +208,7 @@ def commands_of(manipulation: Kind, commands: Mapping[str, Callable[[Kind, str],
 
 
 def _reply(manipulation: Manipulation, traj: Trajectory, options: Options, before: str = "") -> str:
-    """Execute a motion unless the options forbid it, and return the answer of the command."""
+    """Execute a motion unless the options forbid it; return the command's answer, which begins with ``before``."""
     if options.get("execute", True):
         manipulation.execute(traj)
     return before + (traj.serialize(AS_TEXT).decode() if options.get("outputtraj") else "")

@@ -109,7 +109,10 @@ class WorkspaceTrajectoryTracker(Planner):
     def _solutions(
         self, values: Values, hand: Hand, goal: IkParameterization, near: Floats, *, check: bool
     ) -> list[Floats]:
-        """Return the configurations that reach a goal, nearest to ``near`` first; for greedy searches only one."""
+        """Return the configurations that reach a goal, nearest to ``near`` first; for greedy searches only one.
+
+        If ``check``, they also satisfy the constraints and are free of collisions.
+        """
         hand.tool.bodies.move(near)
         solutions: list[Floats] = []
         for row in hand.manip.FindIKSolutions(goal, 0):

@@ -261,9 +261,9 @@ class PlannerParameters(ApiObject):
     def set_goal_sampler(self, sample: RootSets, probability: float = 0.1, *, holding: KinBody | None = None) -> None:
         """Set regions or a function as a source of goals, in addition to those of ``SetGoalConfig``.
 
-        All planners sample goals before planning, ``birrt`` also during planning. Goals in regions are all IK solutions
-        of random poses. The problem must move the arm joints of the active manipulator,
-        and its gripper joints if regions have a ``preshape``.
+        From regions, all planners sample goals before planning, and ``birrt`` also during planning: all IK solutions of
+        random poses. Only ``birrt`` calls a function, during planning. The problem must move the arm joints of the
+        active manipulator, and its gripper joints if regions have a ``preshape``.
 
         Args:
             sample: One or more regions, one of which the tool must reach; or a function that returns a goal of shape

@@ -40,7 +40,7 @@ _MOST_ROWS = 16
 """Maximum number of IK solutions that are tested for a pose; arms with ranges of several turns may have hundreds."""
 
 _SAME = 1e-9
-"""Tolerance of equal values [rad or m]."""
+"""Tolerance of equal gripper values [rad or m]."""
 
 _FULL_POSE = 6
 """Minimum number of joints of an arm that can reach full poses."""
