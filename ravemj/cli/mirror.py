@@ -92,7 +92,7 @@ def _update(robot: Robot, states: JointStates) -> None:
 
 
 def _ghost_motion(env: Environment, robot: Robot, options: argparse.Namespace) -> tuple[Robot, Motion]:
-    """Add a transparent copy of the robot; return the copy and its motion, from the options' file."""
+    """Add a transparent copy of the robot; return the copy and its motion, read from the file in the options."""
     followed, dofs = followed_file(env.simulation, motion_file(env, options)), range(robot.GetDOF())
     before, rows = robot.GetDOFValues(), list[Floats]()
     times = list(followed.frame_times(1 / _PERIOD))

@@ -151,7 +151,10 @@ def _write_picture(plan: Plan, camera: Camera | None, options: argparse.Namespac
 
 
 def _draw(plan: Plan, *, path: bool, trees: bool) -> list[GraphHandle | None]:
-    """Draw the smallest clearance and, if requested, end-effector path and search trees; return the handles."""
+    """Draw the nearest points and, if requested, end-effector path and search trees; return the handles.
+
+    The nearest points are those of the smallest clearance along the motion, known only with a certificate.
+    """
     env, drawn = plan.robot.GetEnv(), list[GraphHandle | None]()
     env.SetViewer("offscreen")  # handles of drawings
     grown = plan.search.trees if trees and plan.search is not None else ()

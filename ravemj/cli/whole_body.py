@@ -42,7 +42,7 @@ def reach(options: argparse.Namespace) -> int:
 def _solved(robot: Robot, options: argparse.Namespace) -> WholeBodyResult:
     """Solve and move the robot.
 
-    If contacts are kept, the base is free, and the centre of mass keeps its x and y.
+    With ``--keep``, the named frames stay in contact, the base is free, and the centre of mass keeps its x and y.
     """
     kept = [name for names in options.keep for name in names]
     ik = WholeBodyIK(robot, base=bool(kept))

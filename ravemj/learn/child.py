@@ -174,7 +174,7 @@ def _defined(path: Path, text: str, function: str) -> dict[str, object]:
 
 
 def _has_hole(tree: ast.Module, name: str) -> bool:
-    """Return whether a function still contains the placeholder ``...``, alone or as a value."""
+    """Return whether a function still contains the placeholder ``...``, as a statement or as a value."""
     functions = (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef) and node.name == name)
     values = (
         node

@@ -219,7 +219,7 @@ class Interaction:
     # --- while others hold the lock
 
     def handle_view_events(self, events: Sequence[Event]) -> list[Event]:
-        """Handle the events that change only the view, while others hold the simulation's lock.
+        """Handle the events that change only the view, while other threads hold the simulation's lock.
 
         Returns:
             The events that need the simulation. Clicks made before the view changed are dropped.
@@ -239,7 +239,7 @@ class Interaction:
         return waiting
 
     def advance_view(self, now: float) -> None:
-        """Advance the camera's glide while others hold the simulation's lock; ``now`` is from ``time.monotonic``."""
+        """Advance the camera's glide while other threads hold the lock; ``now`` is from ``time.monotonic``."""
         self._navigation.advance(now)
 
 

@@ -146,7 +146,7 @@ class WindowViewer(Viewer):
         return period(time.monotonic() - self._changed_at)
 
     def _handle_view_events(self, window: GlfwWindow, painter: WindowRenderer, now: float) -> bool:
-        """Handle only view events, while others hold the simulation's lock; return whether to draw."""
+        """Handle only view events, while other threads hold the simulation's lock; return whether to draw."""
         size = [Resize(*window.points)] if self.interaction.view.size != window.points else []
         window.events = self.interaction.handle_view_events([*size, *window.events])
         self.interaction.advance_view(now)

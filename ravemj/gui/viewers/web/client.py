@@ -231,7 +231,7 @@ class Client:
         return overlay
 
     def _update_of_view(self, style: PageStyle, now: float) -> _Update | None:
-        """Handle only view events, while others hold the simulation's lock; return the update if one is due."""
+        """Handle only view events, while other threads hold the simulation's lock; return the update if due."""
         before = self.interaction.view.camera
         self._waiting = deque(self.interaction.handle_view_events(list(self._waiting)))
         self._has_moved |= self.interaction.view.camera is not before
