@@ -336,7 +336,7 @@ class CollisionChecker(Interface):
             aabb: The box, in its own frame.
             pose: ``T_world_box``: 4x4, 3x4 or [w, x, y, z, tx, ty, tz].
             arguments: The remaining arguments by position.
-            bodiesincluded: The bodies; by default all.
+            bodiesincluded: The bodies to test; by default all.
             report: Receives the result; the box appears in it as a body ``box``.
         """
         checked_kind(aabb, AABB, "CheckCollisionOBB: aabb")

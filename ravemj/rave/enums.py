@@ -7,7 +7,7 @@ class CheckLimitsAction(NamedInt):
     """Treatment of joint values and velocities outside the limits."""
 
     Nothing = 0
-    """Set values outside the limits unchanged."""
+    """Accept values outside the limits."""
     CheckLimits = 1
     """Clamp values to the limits, with a warning."""
     CheckLimitsSilent = 2
@@ -315,7 +315,7 @@ class PlannerAction(NamedInt):
 
 
 class Interval(NamedFlag):
-    """End points that belong to an interval, and OpenRAVE's flags of interpolations, such as ``Cubic``."""
+    """Flags: which end points belong to an interval, and OpenRAVE's kinds of interpolation, such as ``Cubic``."""
 
     Open = Default = 0
     OpenStart = 1

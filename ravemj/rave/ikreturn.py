@@ -97,7 +97,7 @@ class IkFailureInfo(ApiObject):
         action: The reason of the rejection.
         configuration: The joint values that were rejected, shape (n,); none if the goal is out of reach.
         ikparam: The goal, in the frame of the arm's base.
-        report: The collision, if it was one.
+        report: The collision report, if a collision was the reason.
         description: The reason as a sentence.
     """
 

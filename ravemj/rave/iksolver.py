@@ -427,9 +427,9 @@ class IkSolver(Interface):
         """Return the accepted solution nearest to a configuration, or the reasons of the failure; see ``search``.
 
         Args:
-            goal: See ``search``.
-            shares: See ``search``.
-            options: See ``search``.
+            goal: The goal in the frame of the arm's base; an array is a pose of the tool (4, 4).
+            shares: Values of the free joints as fractions of their ranges, shape (k,); None means any.
+            options: ``IkFilterOptions`` combined with ``|``.
             seed: The configuration, shape (n,); None: the present one.
             failures: Receives the rejected solutions.
         """
@@ -518,7 +518,7 @@ class IkSolver(Interface):
             callback: ``callback(values, manipulator, ikparam)`` returns an ``IkReturnAction`` (``Success`` keeps the
                 solution, ``Reject`` goes on to the next, ``Quit`` ends the search), an ``IkReturn`` whose solution
                 takes the place of this one, or None, which rejects. ``ikparam`` is in the frame of the arm's base; the
-                robot stands in the solution, and its active DOFs are those of the arm.
+                robot is at the solution, and its active DOFs are those of the arm.
 
         Returns:
             A handle; closing or deleting it removes the callback.

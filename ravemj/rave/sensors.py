@@ -44,7 +44,7 @@ class DescribedSensor(Interface):
     """Sensor with its description in the scene, on a robot or without one.
 
     Attributes:
-        attached: The attached sensor of a robot that it belongs to, or None.
+        attached: The mount of the sensor on a robot, or None.
     """
 
     _often_called = ("SetTransform",)

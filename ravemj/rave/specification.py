@@ -284,7 +284,7 @@ class ConfigurationSpecification(ConfigurationData):
 
     @classmethod
     def of(cls, groups: Sequence[Group]) -> Self:
-        """Make a specification of copies of groups."""
+        """Make a specification from copies of groups."""
         spec = cls()
         spec._groups = layout.copied(groups)
         return spec

@@ -428,7 +428,7 @@ def _motor_of(axis: scene.Axis, *, is_slider: bool) -> ElectricMotorActuatorInfo
 
 
 def type_of(kind: scene.JointKind) -> JointType:
-    """Return OpenRAVE's joint type."""
+    """Return OpenRAVE's joint type of a kind of joint in scenes."""
     return next(number for number, known in _KINDS.items() if known == kind)
 
 

@@ -348,7 +348,10 @@ class KinBody(BodyConfiguration, Interface):
         return link.GetIndex()
 
     def restorers(self, options: int) -> list[Restorer]:
-        """Return functions that restore the present state, on this body or on another body of the same structure."""
+        """Return functions that restore the present state, on this body or on another body of the same structure.
+
+        ``options`` are the parts of the state, ``SaveParameters`` combined.
+        """
         return body_restorers(self._state, options)
 
     def __enter__(self) -> Self:
@@ -758,7 +761,7 @@ def described_grab(state: BodyState, info: GrabbedInfo) -> GrabbedBody:
     """Return the grab described by an info.
 
     Raises:
-        ArgumentError: the grabbed body or a link does not exist, or the grabbed body has grabbed the other one.
+        ArgumentError: the body to grab or a link does not exist, or the body to grab has grabbed this one.
     """
     held = state.simulation.body(info._grabbedname)
     if held is None:

@@ -24,7 +24,7 @@ __all__ = ["MODULES", "Module", "RaveCreateModule", "RaveCreateProblem", "base_m
 _LOG = logging.getLogger("ravemj")
 
 MODULES = ("BaseManipulation", "Grasper", "TaskManipulation", "ikfast", "logging", "urdf", "viewerrecorder")
-"""Names of the modules."""
+"""Names of the modules that ``RaveCreateModule`` makes."""
 
 MISSING: Mapping[str, str] = {
     "taskcaging": "caging of handles",

@@ -36,7 +36,7 @@ _MOST = 16
 """Maximum number of contacts in the first, fast test of force closure; OpenRAVE's value."""
 
 _CLOSED = 1e-9
-"""Minimum distance to the boundary of the wrench hull at which the fast test suffices; OpenRAVE's value."""
+"""Distance of the origin from the boundary of the wrench hull above which the fast test suffices; OpenRAVE's."""
 
 _BLOCK = 32
 """Number of candidates per task of a worker process."""
@@ -54,7 +54,7 @@ class GraspRequest:
         friction: Friction coefficient.
         forceclosure: Whether to compute the distance and the volume of the wrench hull.
         stablecontacts: Whether only contacts count that the fingers press against the target.
-        least: Distance to the boundary of the wrench hull below which the volume is not computed, but 0.
+        least: Distance of the origin from the boundary of the wrench hull, below which the volume is set to 0.
     """
 
     parameters: GraspParameters = field(default_factory=GraspParameters)
@@ -122,7 +122,7 @@ class Sweep(NamedTuple):
     Attributes:
         start: Index of the first candidate.
         most: Maximum number of grasps; 0 means no limit.
-        threshold: Minimum distance to the boundary of the wrench hull; None accepts all grasps.
+        threshold: Minimum distance of the origin from the boundary of the wrench hull; None accepts all grasps.
         tries: Number of repetitions with noise, all of which have to succeed and end close to one another.
         checkik: Whether the arm has to reach the grasp without collisions.
     """

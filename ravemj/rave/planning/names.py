@@ -121,7 +121,7 @@ def retimed(traj: Trajectory, name: str, factors: tuple[float, float] = (1.0, 1.
 def of_bodies(
     traj: Trajectory, extra: str = "", maxvelmult: float = 1.0, maxaccelmult: float = 1.0
 ) -> PlannerParameters:
-    """Return planner parameters for the joints and poses in a trajectory; see ``scaled``."""
+    """Return planner parameters for the joints and poses in a trajectory, with scaled limits; see ``scaled``."""
     spec = ConfigurationSpecification.of(traj.GetConfigurationSpecification().GetGroups())
     for group in spec.GetGroups():
         if not is_position(group):

@@ -286,7 +286,7 @@ def _further(sampler: Sampler | None, refuse: Refuse) -> MoreRoots | None:
 _LOG = logging.getLogger("ravemj")
 
 PREFIX = "ompl_"
-"""Prefix of the planner names, in lower case."""
+"""Prefix of the names of OMPL's planners, in lower case."""
 
 
 def is_ompl_planner(name: str) -> bool:

@@ -201,7 +201,7 @@ class _PoseSolver:
     def shortfall(self, region: int, poses: PoseSet, T_world_tool: Floats) -> str:
         """Describe how near to a region the tool gets.
 
-        This is a local minimum, found from the reachable configuration nearest to one pose of the region.
+        The distance is a local minimum, found from the reachable configuration nearest to one pose of the region.
         """
         solver, base = self._manip.ik_solver(_Type.Transform6D), self._manip.GetBase()
         T_world_base = np.eye(4) if base is None else base.GetTransform()
@@ -246,7 +246,7 @@ def _some(rows: Floats, near: Floats, random: np.random.Generator) -> Floats:
 
 
 def _repaired(values: Values, error: Error, row: Floats) -> Floats | None:
-    """Project a configuration onto both the constraint and a region; None if that fails, or without constraint."""
+    """Project a configuration onto the path constraint and a region; None if that fails or there is no constraint."""
     manifold = values.conditions.manifold
     if manifold is None:
         return None

@@ -262,7 +262,7 @@ class Values:
         return space_of(self.coordinates(), *limits, self.weights, vector["_vconfigresolution"])
 
     def limits(self) -> PathLimits:
-        """Return the limits of motions.
+        """Return the limits of values, velocities, accelerations and jerks.
 
         Raises:
             ArgumentError: the number of limits is wrong.

@@ -421,7 +421,10 @@ class Robot(ActiveDofs):
         self.devices.take_over(other.devices)
 
     def restorers(self, options: int) -> list[Restorer]:
-        """Return functions that restore the current state, on this robot or on another robot of the same structure."""
+        """Return functions that restore the current state, on this robot or on another robot of the same structure.
+
+        ``options`` are the parts of the state, ``SaveParameters`` combined.
+        """
         restorers = super().restorers(options)
         if options & _ACTIVE_DOF:
             choice = self.active_choice

@@ -171,7 +171,7 @@ class ActiveDofs(KinBody):
     affine_kinds: dict[str, AffineKind]
     """Limits, resolutions and weights of the affine DOFs."""
     quaternion_limits: Floats
-    """Value set by ``SetAffineRotationQuatLimits``."""
+    """Rotation limit of the base: a quaternion [w, x, y, z] times the maximum angle [rad], shape (4,)."""
 
     def SetActiveDOFs(self, dofindices: ArrayLike, affine: int = 0, rotationaxis: ArrayLike | None = None) -> None:
         """Choose the DOFs that ``SetActiveDOFValues``, trajectories and planners use.

@@ -443,7 +443,7 @@ class WholeBodyIK(ApiObject):
     def add_distance(self, other: KinBody | Link | None = None, *, minimum: float = 0.01, seen: float = 0.1) -> None:
         """Keep the robot and its grabbed bodies away from itself or an obstacle. Needs the extra ``wholebody``.
 
-        Pairs that are too close at the start are moved apart.
+        Pairs of geometries that are too close at the start are moved apart.
 
         Args:
             other: A body, or a link of one; by default the link pairs of the robot's self-collision check.

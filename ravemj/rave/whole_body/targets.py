@@ -85,7 +85,7 @@ class Target(NamedTuple):
 
 
 def target_of(robot: Robot, target: TargetLike, argument: str, *, rotation: bool = True) -> Target:
-    """Return a target: a pose, or without ``rotation`` its point.
+    """Return the target that an argument describes; without ``rotation``, only the position of a pose or body counts.
 
     Raises:
         ArgumentError: it is not a valid target.
