@@ -21,7 +21,7 @@ def check(path: str | os.PathLike[str], given: Mapping[str, str] | None = None) 
 
     Args:
         path: A model file. Its mistakes become diagnostics, never exceptions.
-        given: Attributes by name that override the file's, such as ``prefix``; those of ``Environment.Load``.
+        given: Attributes by name, such as ``prefix``, as the argument ``atts`` of ``Environment.Load``.
 
     Example:
         >>> from ravemj.cli.checking import check

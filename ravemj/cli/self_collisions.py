@@ -42,7 +42,7 @@ class Touching(NamedTuple):
 
     @property
     def reason(self) -> str:
-        """The reason attribute of a disabled pair in MoveIt's SRDF files."""
+        """Value of the attribute ``reason`` of a disabled pair in MoveIt's SRDF files."""
         return "Always" if self.share > ALWAYS else "Default"
 
 

@@ -154,7 +154,7 @@ class Controls:
         return names_of(self._selector.selection)
 
     def rows(self, search: str) -> list[Control]:
-        """Return the tree rows that match a search, for a window; if the help is open, a button that closes it."""
+        """Return the rows of a window: if the tree is open, those that match a search; for the help, a close button."""
         if self.unfolded == "help":
             return [Control("help", "", group="help")]
         if self.unfolded != "tree":

@@ -9,7 +9,7 @@ from ravemj.engine.simulation import BodyState
 
 
 class Body(Protocol):
-    """A body of the API."""
+    """Protocol of a body of the OpenRAVE API."""
 
     @property
     def simulation_state(self) -> BodyState: ...
@@ -26,7 +26,7 @@ class ShownAnimation(Protocol):
 
 
 class Host(Protocol):
-    """An environment of the API."""
+    """Protocol of an environment of the OpenRAVE API."""
 
     def wrap(self, body: BodyState, /) -> Body: ...
 
