@@ -536,7 +536,7 @@ class MultiController(Controller):
         return True
 
     def RemoveController(self, controller: Controller) -> None:
-        """Remove ``controller``. Its DOFs then have none."""
+        """Remove ``controller``. Its DOFs then have no controller."""
         self._parts = tuple(part for part in self._parts if part.controller is not controller)
 
     def GetController(self, dof: int) -> Controller | None:

@@ -290,7 +290,7 @@ class Link(Member):
             self._set_groups({name: (*group, *added) for name, group in self._scene.groups})
 
     def RemoveGeometryByName(self, geometryname: str, removeFromAllGroups: bool = True) -> bool:
-        """Remove the geometries of a name.
+        """Remove the geometries with a name.
 
         Args:
             geometryname: The name.

@@ -40,9 +40,10 @@ class RegionLike(Protocol):
 class Region(ApiObject):
     """A task space region: the tool poses between bounds of six coordinates.
 
-    They are ``T0_w @ D @ Tw_e`` in the frame, with ``D = translate(x, y, z) Rz(yaw) Ry(pitch) Rx(roll)`` and the six
-    numbers within ``Bw`` (D. Berenson, S. Srinivasa and J. Kuffner, "Task Space Regions", IJRR 30(12), 2011). At a
-    pitch of 90 degrees roll and yaw turn about one axis, so choose ``T0_w`` such that the largest rotation is the yaw.
+    The poses are ``T0_w @ D @ Tw_e`` in the frame, with ``D = translate(x, y, z) Rz(yaw) Ry(pitch) Rx(roll)`` and
+    the six numbers within ``Bw`` (D. Berenson, S. Srinivasa and J. Kuffner, "Task Space Regions", IJRR 30(12), 2011).
+    At a pitch of 90 degrees roll and yaw turn about one axis, so choose ``T0_w`` such that the largest rotation is the
+    yaw.
 
     Args:
         T0_w: The pose of the region in the frame: 4x4, 3x4 or 7 numbers; by default the frame itself.

@@ -127,7 +127,7 @@ class DescribedSensor(Interface):
         return self.description.type or ""
 
     def GetTransform(self) -> Floats:
-        """Return the pose in the world, shape (4, 4): that of the attached sensor."""
+        """Return the pose in the world, shape (4, 4)."""
         return self._own.T_link_sensor.matrix() if self.attached is None else self.attached.GetTransform()
 
     def GetTransformPose(self) -> Floats:

@@ -123,7 +123,7 @@ class Trajectory(Interface):
         return self._waypoints
 
     def set_waypoints(self, waypoints: Waypoints, certificate: Certificate | None = None) -> None:
-        """Replace layout and waypoints, and the certificate of the motion if there is one."""
+        """Replace layout, waypoints and certificate; None means that the motion has no certificate."""
         self._waypoints = waypoints
         self._certificate = None if certificate is None else (waypoints, certificate)
 

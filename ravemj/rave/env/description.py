@@ -482,7 +482,7 @@ class Description(Contents):
 
     @property
     def clock(self) -> Clock:
-        """Clock of the simulation time, below OpenRAVE's API."""
+        """Clock of simulation time, an object of ravemj that is not part of OpenRAVE's API."""
         return self._clock
 
     def _advance(self, timestep: float) -> None:

@@ -20,7 +20,7 @@ from ravemj.rave.enums import SensorType
 from ravemj.rave.infos.base import TEXT, Entry, Form, Info, Json, info, info_class, json_field, vector
 
 PINHOLE = {"fx": (0, 0), "fy": (1, 1), "cx": (0, 2), "cy": (1, 2)}
-"""Elements of a camera matrix by name."""
+"""Row and column of each element of a camera matrix, by name."""
 
 
 def _number_of_matrix(place: tuple[int, int]) -> Form:

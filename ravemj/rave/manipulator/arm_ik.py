@@ -104,7 +104,7 @@ class ArmIk(ApiObject):
         return self._scene
 
     def moved_up(self, removed: int) -> None:
-        """Update the manipulator's index after the one with the index ``removed``, perhaps this one, was removed."""
+        """Update this manipulator's index after the removal of the one with index ``removed``, perhaps this one."""
         if self._index >= removed:
             self._index = _GONE if self._index == removed else self._index - 1
 

@@ -52,7 +52,7 @@ class GraspRequest:
         parameters: Approach of the hand.
         chuckingdirection: Sign of the motion of each gripper joint; None: the manipulator's.
         friction: Friction coefficient.
-        forceclosure: Whether to compute the distance and the volume of the wrench hull.
+        forceclosure: Whether to compute the volume of the wrench hull, and the origin's distance from its boundary.
         stablecontacts: Whether only contacts count that the fingers press against the target.
         least: Distance of the origin from the boundary of the wrench hull, below which the volume is set to 0.
     """
@@ -260,7 +260,7 @@ class GraspSimulation(Manipulation):
         return rows[kept], indices[kept]
 
     def execute_grasp(self, answer: GraspAnswer) -> None:
-        """Have the controller move the joints to those of a grasp."""
+        """Have the controller move the joints to their values in a grasp."""
         self.execute(self.trajectory_of(answer.path[-1:] and [answer.end]))
 
     def trajectory_of(self, path: Sequence[Waypoint]) -> Trajectory:

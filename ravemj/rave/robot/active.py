@@ -167,7 +167,7 @@ class ActiveDofs(KinBody):
     _often_called = ("CalculateActiveJacobian", "SetActiveDOFValues")
 
     active_choice: ActiveChoice
-    """Choice made by ``SetActiveDOFs``."""
+    """The active DOFs that ``SetActiveDOFs`` has chosen."""
     affine_kinds: dict[str, AffineKind]
     """Limits, resolutions and weights of the affine DOFs."""
     quaternion_limits: Floats
