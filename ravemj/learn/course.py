@@ -94,7 +94,7 @@ def our_course() -> Course:
 
 
 def start(course: Course, folder: Path) -> list[Exercise]:
-    """Copy the exercises that a folder does not contain yet into it; return these exercises."""
+    """Copy the exercises that are missing in a folder into it; return these exercises."""
     missing = [exercise for exercise in course.exercises if not (folder / exercise.original.name).exists()]
     for exercise in missing:
         _copy(exercise, folder)

@@ -75,7 +75,7 @@ class Interaction:
 
     @property
     def view(self) -> Viewpoint:
-        """The camera."""
+        """The viewpoint: the camera and its focus."""
         return self._navigation.view
 
     @view.setter

@@ -92,7 +92,7 @@ class PointerController:
 
     @property
     def view(self) -> Viewpoint:
-        """The camera."""
+        """The viewpoint: the camera and its focus."""
         return self._navigation.view
 
     @view.setter
@@ -135,7 +135,7 @@ class PointerController:
         return None if at is None else pick(self._simulation, self.view.ray(*at))
 
     def cursor(self) -> str:
-        """Return the cursor shape if there is no handle or body under the pointer."""
+        """Return the cursor shape for a pointer that is neither on a handle nor on a body."""
         is_tool = self.pointer is not None and self._button_at(Press(*self.pointer)) is not None
         if self.layout.field_at(self.pointer) is not None:
             return "text"

@@ -51,7 +51,7 @@ class Selector:
     """The selection of a viewer, with the handle (box or cylinder) of the selected body or joint.
 
     Attributes:
-        simulation: The bodies.
+        simulation: The simulation of the bodies.
         selection: The selection, or None.
         changes: Counter, increased whenever the selection may have changed.
         pins: The pinned links.

@@ -38,7 +38,7 @@ LOCKED, PATIENCE = "Locked by the script", 1.0
 class Viewer(Interactive):
     """A viewer of an environment, created by ``env.SetViewer`` and returned by ``env.GetViewer()``.
 
-    This one has no window: it renders on request. The camera follows OpenRAVE's convention: a 4x4 matrix
+    This base class has no window: it renders on request. The camera follows OpenRAVE's convention: a 4x4 matrix
     ``T_world_camera`` whose columns are image right, image down, the viewing direction, and the position of the eye.
 
     Example:
