@@ -80,7 +80,10 @@ class Compiled:
         return compiled
 
     def _report(self, complaint: str, scene: Scene, diagnostics: Diagnostics) -> None:
-        """Record a warning of MuJoCo as a diagnostic; if it names a DOF, at the link's position in the user's file."""
+        """Convert a warning of MuJoCo to a diagnostic.
+
+        If it names a DOF, the diagnostic has the position, in the user's file, of the link that the DOF moves.
+        """
         source, about = Source("the translated model", 0), ""
         match = _DOF.search(complaint)
         if match:

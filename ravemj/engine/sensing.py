@@ -15,7 +15,7 @@ from ravemj.model.drawing import NOTHING, Primitives, line_list, merge, mesh, po
 from ravemj.model.scene import Device, FlashLidar, ForceTorque, Intrinsics, Laser
 
 _WHOLE = 1e-9
-"""Rounding tolerance for the last ray of a laser's range, as a fraction of the angle step."""
+"""Rounding tolerance when counting the angle steps of a laser's range, as a fraction of a step."""
 
 _FRUSTUM = 0.15
 """Depth of a drawn camera frustum [m]."""

@@ -93,7 +93,7 @@ _MANY = 50
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> "MovingTest | None":
-    """Return a fast collision test of joint values, or None if links are displaced from their joints.
+    """Return a fast collision test of joint values, or None if a link is displaced from the pose given by its joints.
 
     It tests the moved links and grabbed bodies. While it is used, the world must not change otherwise, and the caller
     holds the lock. The test moves the world's model, and possibly the body's joints: ``body.restore`` restores both.

@@ -27,7 +27,7 @@ LIFT, SHAKE = 0.1, 5.0
 """Height to which the hand is lifted [m], and amplitude of its acceleration along each axis afterwards [m/s^2]."""
 
 MOST_MOVED, MOST_TURNED = 0.005, np.radians(5.0)
-"""Largest translation [m] and rotation [rad] in the hand of an object that is held."""
+"""Maximum translation [m] and rotation [rad] in the hand with which an object counts as held."""
 
 _PRESSING, _LIFTING, _SHAKING = 0.5, 0.5, 1.0  # s; the last for each axis
 _TIMESTEP = 0.001  # s
@@ -208,5 +208,5 @@ def _fixed(robot: KinBody) -> KinBody:
 
 
 def _free(body: KinBody) -> KinBody:
-    """Return a body without static links."""
+    """Return a body with all links marked as not static."""
     return replace(body, links=tuple(replace(link, static=False) for link in body.links))
