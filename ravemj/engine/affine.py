@@ -48,7 +48,7 @@ class AffineMotion:
         return velocity
 
     def translation_jacobian(self, point: Floats) -> Floats:
-        """Return the derivative of a point fixed to the base, in the world, by the affine values, shape (3, n).
+        """Return the Jacobian of the position of a point fixed to the base, with respect to the affine values, (3, n).
 
         ``point`` is its present world position [m], shape (3,).
         """

@@ -195,7 +195,7 @@ class _Chosen(NamedTuple):
 
     @classmethod
     def of(cls, world: CollisionWorld, body: BodyState, dofs: Sequence[int], kinds: Sequence[_Kind]) -> "_Chosen":
-        """Return the pairs of a body that ``dofs`` move, for ``kinds`` of queries; cached while bodies only move."""
+        """Return the pairs of a body that ``dofs`` move, for ``kinds`` of queries; cached if only poses change."""
         moved = MovedBy(tuple(dofs))
         return world.kept((body, moved, kinds), lambda: cls._chosen(world, body, moved, kinds))
 
