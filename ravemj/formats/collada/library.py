@@ -44,7 +44,7 @@ class ResolvedReference(NamedTuple):
 
     Attributes:
         element: The element.
-        through: The instances on the path of the reference.
+        through: The instance elements that the path to it passes through.
     """
 
     element: Element

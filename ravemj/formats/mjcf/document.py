@@ -160,7 +160,10 @@ class _UniqueNames:
     )
 
     def give(self, kind: str, body: KinBody, name: str) -> str:
-        """Reserve and return a unique name: ``name`` or, with a warning, ``name`` after the body's name."""
+        """Reserve and return a unique name: ``name`` or, if it is in use, ``name`` prefixed by the body's name.
+
+        A warning is given for a prefixed name.
+        """
         unique = name
         while unique in self.taken[kind]:
             unique = f"{body.name}/{unique}"

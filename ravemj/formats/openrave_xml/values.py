@@ -71,7 +71,7 @@ def numbers(element: Element, count: int, diagnostics: Diagnostics, before: Sequ
     """Return exactly ``count`` numbers from an element's text.
 
     A word that is not a number is read as 0 and ends the reading (``bad-number``); missing numbers keep their values
-    (gap-14, gap-15), and excess numbers are ignored (``number-count``). OpenRAVE reports neither.
+    (tests gap-14, gap-15), and excess numbers are ignored (``number-count``). OpenRAVE reports neither.
 
     Args:
         element: The element.
