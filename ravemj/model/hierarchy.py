@@ -164,7 +164,7 @@ def _parents(neighbours: Sequence[Sequence[int]]) -> list[list[int]]:
 
 
 def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Sequence[int], *, has_dofs: bool) -> bool:
-    """Return whether the second listed link is the parent; link 0 is never a child (gap-05, gap-06, gap-07)."""
+    """Return whether the second listed link is the parent; link 0 is never a child (tests gap-05, gap-06, gap-07)."""
     first, second = links
     if static_links[second]:  # also in bodies without DOFs
         return not static_links[first] and first != 0
