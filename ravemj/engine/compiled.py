@@ -67,7 +67,8 @@ class Compiled:
     def mechanism(cls, body: KinBody) -> "Compiled":
         """Compile the links and joints of one body without shapes; each root has a free joint.
 
-        The model has the true masses and inertias. Only the translation of the whole scene gives warnings.
+        The model has the true masses and inertias. No warnings are reported, since the translation of the whole scene
+        reports them.
 
         Raises:
             CompileError: MuJoCo refuses the model.

@@ -17,7 +17,7 @@ from ravemj.model.scene import Joint
 
 
 class DerivativeRows:
-    """Derivatives with respect to MuJoCo's velocities, such as a Jacobian, or generalised forces.
+    """Array for a Jacobian with respect to MuJoCo's velocities, or for generalised forces of these.
 
     Attributes:
         matrix: MuJoCo's output, shape (..., nv).

@@ -103,7 +103,7 @@ class _Experiment:
         self._pressed = self._pressing_forces(hand_names)
 
     def _edit(self, spec: mujoco.MjSpec, written: Mjcf) -> None:
-        """Remove the joints of the arm, damp the closing joints, and lock the others of the hand."""
+        """Remove the joints of the arm, damp the closing joints, and lock the other joints of the hand."""
         signs = dict(zip(self._arm.gripper_dofs, self._arm.chucking_direction, strict=True))
         removed: set[str] = set()
         dof = 0
