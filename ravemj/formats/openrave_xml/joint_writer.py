@@ -113,7 +113,10 @@ class JointWriter:
             self._diagnostics.warn("not-written", message, joint.source)
 
     def _slider_frame(self, joint: Joint) -> int:
-        """Return the frame of a slider: the child link if only its origin is at the anchor, else the parent link."""
+        """Return the link in whose frame a slider is written.
+
+        It is the child if only the child's origin is at the anchor, else the parent.
+        """
         parent, child = self._poses[joint.parent], self._poses[joint.child]
         anchor = parent.apply(joint.anchor)
         near = [math.dist(link.position, anchor) < _NEAR for link in (parent, child)]

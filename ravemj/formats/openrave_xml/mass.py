@@ -113,7 +113,7 @@ MASS_TAGS: dict[str, Tag[_Mass]] = {
 
 
 def read_mass(element: Element, before: MassRule | None, scale: Vec3, context: Context) -> MassRule:
-    """Read a ``<Mass>`` of a Body; return the rule of earlier elements, ``before``, with the values of this one."""
+    """Read a ``<Mass>`` of a Body; return the rule of earlier elements, ``before``, updated by this element."""
     context.check_attributes(element, MASS_ATTRIBUTES, {})
     kind = element.attributes.get("type", "sphere").lower()
     if kind not in {"mimicgeom", "sphere", "box", "custom"}:  # mass-24
