@@ -346,8 +346,8 @@ class MovingTest:
     def of_many(self, values: Floats) -> NDArray[np.bool_]:
         """Return for each configuration, shape (n, dofs), whether the body collides.
 
-        Without grabbed bodies, and if MuJoCo tests all pairs, its threads first count the contacts of all
-        configurations. Those with contacts are tested again, unless MuJoCo's result is already exact.
+        Without grabbed bodies, and if MuJoCo tests all pairs, MuJoCo first counts the contacts of all configurations in
+        several threads. Configurations with contacts are tested again, unless MuJoCo's result is already exact.
         """
         if self._held is not None or self._rest is not None or not self._place.is_plain or len(values) < _MANY:
             return np.array([self(configuration) for configuration in values], dtype=bool)

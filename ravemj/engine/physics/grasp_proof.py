@@ -190,7 +190,10 @@ class _Experiment:
 
 
 def _accelerations(gravity: Floats) -> Iterator[Floats]:
-    """Yield the acceleration of the hand in the world at each time step, shape (3,): up, then back and forth."""
+    """Yield the acceleration of the hand in the world at each time step, shape (3,): up, then back and forth.
+
+    Up is the direction opposite to ``gravity``.
+    """
     length = float(np.linalg.norm(gravity))
     up = -gravity / length if length else np.array([0.0, 0.0, 1.0])
     count = round(_LIFTING / _TIMESTEP)
