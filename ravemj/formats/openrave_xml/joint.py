@@ -269,8 +269,8 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
 def _direction(reader: _JointElement, index: int, frame: Pose, *, exchanged: bool) -> Vec3:
     """Return the direction of a joint's axis, or OpenRAVE's default direction, in the first link's frame.
 
-    The default is z, whatever the order of the links (test errors-26); a slider without an axis gets 0 and does not
-    move.
+    If the two links were ``exchanged``, a given direction is reversed. The default is z, whatever the order of the
+    links (test errors-26); a slider without an axis gets the zero vector and does not move.
     """
     direction = _UNIT[index] if reader.kind == "spherical" else reader.directions.get(index)
     if direction is not None:

@@ -113,7 +113,10 @@ MASS_TAGS: dict[str, Tag[_Mass]] = {
 
 
 def read_mass(element: Element, before: MassRule | None, scale: Vec3, context: Context) -> MassRule:
-    """Read a ``<Mass>`` of a Body; return the rule of earlier elements, ``before``, updated by this element."""
+    """Read a ``<Mass>`` of a Body; return the rule of earlier elements, ``before``, updated by this element.
+
+    Lengths are multiplied by the factors ``scale`` along x, y and z.
+    """
     context.check_attributes(element, MASS_ATTRIBUTES, {})
     kind = element.attributes.get("type", "sphere").lower()
     if kind not in {"mimicgeom", "sphere", "box", "custom"}:  # mass-24

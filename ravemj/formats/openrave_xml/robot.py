@@ -12,7 +12,10 @@ from ravemj.model.scene import AttachedSensor
 
 
 def named_link(body: BodyBuilder, element: Element, owner: str, context: Context) -> str:
-    """Return the name of a link. It should already exist, although the file may define it later (test gap-29)."""
+    """Return the name of a link. It should already exist, although the file may define it later (test gap-29).
+
+    ``owner`` is the part that refers to the link, for the message.
+    """
     name = word(element, context.diagnostics)
     if body.find_link(name) is None:
         message = f"there is no Body '{name}' for the <{element.spelled}> of {owner}"

@@ -112,12 +112,12 @@ def number_list(element: Element, diagnostics: Diagnostics) -> list[float]:
 
 
 def number(element: Element, diagnostics: Diagnostics, before: float = 0.0) -> float:
-    """Return the single number in an element's text."""
+    """Return the single number in an element's text; ``before`` if the text has none."""
     return numbers(element, 1, diagnostics, (before,))[0]
 
 
 def vector(element: Element, diagnostics: Diagnostics, before: Vec3 = ZERO) -> Vec3:
-    """Return the three numbers in an element's text."""
+    """Return the three numbers in an element's text; missing ones are those of ``before``."""
     x, y, z = numbers(element, 3, diagnostics, before)
     return (x, y, z)
 
