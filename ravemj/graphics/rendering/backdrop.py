@@ -106,7 +106,10 @@ def lowest_point(model: mujoco.MjModel, data: mujoco.MjData) -> float:
 
 
 def _reach_down(model: mujoco.MjModel, geoms: Ints, up: Floats) -> Floats:
-    """Return how far geoms extend below their origins in z [m], shape (N,); meshes by their bounding boxes."""
+    """Return how far geoms extend below their origins in z [m], shape (N,); meshes by their bounding boxes.
+
+    ``up`` is the world's z axis in the frame of each geom, shape (N, 3).
+    """
     kind, size = model.geom_type[geoms], model.geom_size[geoms]
     boxes = model.geom_aabb[geoms]
     aside = np.sqrt(np.maximum(1 - up[:, 2] ** 2, 0))

@@ -169,7 +169,10 @@ class _RayScene:
     backdrop: Backdrop
 
     def colors(self, rays: Floats, drawn: Fragments, layers: int = _LAYERS) -> Floats:
-        """Return the unrounded colours in 0..255, shape (N, 3), seen along rays in the world, shape (N, 3)."""
+        """Return the unrounded colours in 0..255, shape (N, 3), seen along rays in the world, shape (N, 3).
+
+        ``drawn`` are the fragments of drawings on the rays; at most ``layers`` transparent surfaces are passed.
+        """
         colors = self.backdrop.colours(rays)
         geom_ids, depth, normals = self.cast(rays)
         hit = np.flatnonzero(geom_ids >= 0)
