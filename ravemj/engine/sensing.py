@@ -94,7 +94,7 @@ def scan(world: CollisionWorld, device: Laser | FlashLidar, T_world_rays: Floats
 
 
 def motion_at(state: BodyState, link: int, point: Floats) -> tuple[Floats, Floats]:
-    """Return the velocity of a point on a link [m/s] and its angular velocity [rad/s], each (3,), in the world."""
+    """Return the velocity of a point on a link [m/s] and the link's angular velocity [rad/s], in the world, (3,)."""
     velocity = state.present_velocities[link]
     arm = point - state.link_transform(link)[:3, 3]
     return velocity[:3] + np.cross(velocity[3:], arm), velocity[3:].copy()

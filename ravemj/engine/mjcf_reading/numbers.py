@@ -53,6 +53,6 @@ def tensor(moments: Floats, wxyz: Wxyz) -> Rows:
 
 
 def symmetric(matrix: Floats) -> Rows:
-    """Return a 3x3 matrix as exactly symmetric rows."""
+    """Return the rows of a nearly symmetric 3x3 matrix, made exactly symmetric."""
     first, second, third = ((matrix + matrix.T) / 2).tolist()
     return vector(first), vector(second), vector(third)
