@@ -15,7 +15,7 @@ _ONES = np.ones(3)
 class JointAxes:
     """Axes of joints and the links that they connect.
 
-    Attributes named ``..._ids`` contain MuJoCo's indices; the others contain link indices.
+    Links are given by link index; ``ids`` and attributes named ``..._ids`` contain MuJoCo's indices.
     """
 
     def __init__(self, joints: Sequence[Joint], body_ids: Ints, ids: Ints | None = None) -> None:
