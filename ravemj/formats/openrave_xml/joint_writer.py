@@ -90,7 +90,7 @@ class JointWriter:
             write_parameters(self._out, joint.parameters)
 
     def _write_frame(self, body: KinBody, joint: Joint) -> None:
-        """Write the anchor and axes of a joint in its parent's frame; a slider's in the frame of `_slider_frame`."""
+        """Write anchor and axes of a joint in its parent's frame; those of a slider in that of ``_slider_frame``."""
         frame = self._slider_frame(joint) if joint.kind == "slider" else joint.parent
         self._out.element("offsetfrom", self._names.links[frame])
         turns_with_child = joint.static and len(body.joints) > 0  # OpenRAVE moves the frame of a weld to its child
