@@ -22,7 +22,7 @@ AXES: dict[JointKind, str] = {
     "pr": "RP",
     "pp": "PP",
 }
-"""Axes of each joint kind (R revolute, P prismatic), the axis nearer to the parent first; last in ``rp``, ``pr``."""
+"""Axes of each joint kind (R revolute, P prismatic), the axis nearer to the parent first, in ``rp`` and ``pr`` last."""
 
 OWN_SHAPES = "self"
 """Name of the group of a link's own shapes, stored while another group replaces them."""

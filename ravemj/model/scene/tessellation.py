@@ -51,7 +51,7 @@ def solid_mesh(kind: str, size: tuple[float, ...]) -> Mesh:
 def _cube() -> tuple[Floats, Ints]:
     """Return corners and triangles of the cube [-1, 1]^3 in OpenRAVE's order.
 
-    The order was found by the random conformance tests api-91001-79 and api-5000-95.
+    The source of the order are the random conformance tests api-91001-79 and api-5000-95.
     """
     corners = np.array([[x, y, z] for x in (1.0, -1.0) for y in (1.0, -1.0) for z in (1.0, -1.0)])
     triangles = "021 123 456 576 014 154 263 367 042 246 135 375"
