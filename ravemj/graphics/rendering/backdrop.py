@@ -55,7 +55,7 @@ class Floor(NamedTuple):
         return distance + FADE_START * self.radius, distance + FADE_END * self.radius
 
     def is_below(self, camera: Camera) -> bool:
-        """Return whether a camera is above the floor."""
+        """Return whether the floor is below a camera."""
         return float(camera.position[2]) - self.height > _LIFTED * self.radius
 
 

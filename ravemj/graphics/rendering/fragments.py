@@ -37,7 +37,7 @@ class Fragments(NamedTuple):
     color: Floats  # colour and opacity, (N, 4): 0..255 and 0..1
 
     def select(self, chosen: NDArray[np.bool_]) -> "Fragments":
-        """Return the fragments of a mask, shape (N,)."""
+        """Return the fragments that a mask selects, shape (N,)."""
         return Fragments(self.ray[chosen], self.depth[chosen], self.color[chosen])
 
     def between(self, start: int, stop: int) -> "Fragments":
