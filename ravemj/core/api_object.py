@@ -50,7 +50,10 @@ class ApiObject(metaclass=_ApiType):
 
 
 def published(thing: Thing, module: str) -> Thing:
-    """Prepare a public function or class: errors name wrong arguments, signatures are shown as in the source."""
+    """Prepare a public function or class: errors name wrong arguments, signatures are shown as in the source.
+
+    ``module`` is the module of a function's public name, in which pickle looks it up.
+    """
     if isinstance(thing, FunctionType):
         thing = cast("Thing", explained(thing))
         thing.__module__ = module  # where pickle finds it

@@ -73,7 +73,7 @@ _KINDS: Mapping[str, tuple[str, Callable[[object], bool]]] = MappingProxyType(
 def explained(function: FunctionType) -> Callable[..., Any]:
     """Wrap a function so that an error of Python caused by a wrong argument type becomes a ``TypeError`` that names it.
 
-    OpenRAVE raises a ``TypeError`` for wrong types, too (plan-31). Like OpenRAVE, it accepts numpy's 0-dimensional
+    OpenRAVE raises a ``TypeError`` for wrong types, too (test plan-31). Like OpenRAVE, it accepts numpy's 0-dimensional
     arrays as numbers: if a call with such arrays fails, it is repeated with their numbers.
     """
     if hasattr(function, _MARK):

@@ -36,7 +36,7 @@ class NamedInt(IntEnum, metaclass=_Listed):
 class NamedFlag(NamedInt):
     """Flags: ``|``, ``&``, ``^`` and ``~`` give whole numbers, as in OpenRAVE, and any whole number makes a flag.
 
-    ``str`` gives class and name of a member, and the number of other flags.
+    ``str`` gives class and name of a member; for a flag that is not a member, its number.
     """
 
     @classmethod

@@ -40,7 +40,7 @@ class AffineMotion:
         return np.concatenate([velocity[:3][self.translations], np.linalg.pinv(self.angular) @ velocity[3:]])
 
     def velocity(self, rates: Floats, before: Floats) -> Floats:
-        """Return the base velocity ``before``, shape (6,), changed to have the given rates of the affine values."""
+        """Return the base velocity ``before``, shape (6,), with its affine DOFs' components replaced by given rates."""
         velocity, split = before.copy(), len(self.translations)
         velocity[self.translations] = rates[:split]
         if self.angular.shape[1]:
@@ -48,7 +48,10 @@ class AffineMotion:
         return velocity
 
     def translation_jacobian(self, point: Floats) -> Floats:
-        """Return the derivative of a point fixed to the base with respect to the affine values, shape (3, n)."""
+        """Return the Jacobian of the position of a point fixed to the base, with respect to the affine values, (3, n).
+
+        ``point`` is its present world position [m], shape (3,).
+        """
         split = len(self.translations)
         jacobian = np.zeros((3, split + self.angular.shape[1]))
         jacobian[self.translations, range(split)] = 1.0

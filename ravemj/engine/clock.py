@@ -111,7 +111,7 @@ class Clock:
             thread.join()
 
     def lose_thread(self) -> None:
-        """Record that the clock's thread ends, if this is the calling thread; ``wake`` then starts another one."""
+        """If the clock's thread calls this, record that the thread ends; ``wake`` then starts another one."""
         with self._starting:
             if self._thread is threading.current_thread():
                 self._thread = None

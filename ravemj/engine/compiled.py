@@ -67,7 +67,8 @@ class Compiled:
     def mechanism(cls, body: KinBody) -> "Compiled":
         """Compile the links and joints of one body without shapes; each root has a free joint.
 
-        The model has the true masses and inertias. Only the translation of the whole scene gives warnings.
+        The model has the true masses and inertias. No warnings are reported, since the translation of the whole scene
+        reports them.
 
         Raises:
             CompileError: MuJoCo refuses the model.
@@ -80,7 +81,10 @@ class Compiled:
         return compiled
 
     def _report(self, complaint: str, scene: Scene, diagnostics: Diagnostics) -> None:
-        """Record a warning of MuJoCo as a diagnostic; if it names a DOF, at the link's position in the user's file."""
+        """Convert a warning of MuJoCo to a diagnostic.
+
+        If it names a DOF, the diagnostic has the position, in the user's file, of the link that the DOF moves.
+        """
         source, about = Source("the translated model", 0), ""
         match = _DOF.search(complaint)
         if match:

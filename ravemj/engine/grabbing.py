@@ -1,4 +1,4 @@
-"""Rules of grabbing."""
+"""Creation of grabs, and their validity in another state or world."""
 
 from collections.abc import Iterable, Sequence
 
@@ -10,7 +10,8 @@ from ravemj.engine.simulation.body import BodyState, GrabbedBody
 def grab_as_it_stands(holder: BodyState, body: BodyState, link: int, ignored: Iterable[int]) -> GrabbedBody:
     """Return the grab of a body by a link at their present relative pose.
 
-    Collisions with the link, the links in contact at present, and ``ignored`` are ignored.
+    The body's collisions are ignored with the grabbing link, with links of ``holder`` that touch it at present, and
+    with those in ``ignored``.
     """
     touched = touching_links(holder.simulation.collisions(), holder, body)
     T_link_body = inverse(holder.link_transform(link)) @ body.link_transform(0)
@@ -18,7 +19,7 @@ def grab_as_it_stands(holder: BodyState, body: BodyState, link: int, ignored: It
 
 
 def still_possible(holder: BodyState, grabs: Sequence[GrabbedBody]) -> list[GrabbedBody]:
-    """Return the grabs of a body that are still possible.
+    """Return the grabs of a body that are possible: both bodies are in the world, and no body grabs itself indirectly.
 
     If ``holder`` is in a copied world, the grabbed bodies are replaced by those of the same name there.
     """

@@ -21,8 +21,8 @@ _ROOM = 1.1
 def scene_text(translation: Translation, file: str) -> str:
     """Return a scene document that includes the translated model ``file``.
 
-    The floor is at the lowest point of the start pose; there is none if that point belongs to a static body that is not
-    a robot, which then is the floor.
+    The floor is at the lowest point of the start pose. If this point belongs to a static body that is not a robot, no
+    floor is added, since that body is the floor.
     """
     model, data = translation.model, translation.home
     height, body = lowest(model, data)

@@ -15,7 +15,7 @@ from ravemj.model.drawing import NOTHING, Primitives, line_list, merge, mesh, po
 from ravemj.model.scene import Device, FlashLidar, ForceTorque, Intrinsics, Laser
 
 _WHOLE = 1e-9
-"""Rounding tolerance for the last ray of a laser's range, as a fraction of the angle step."""
+"""Rounding tolerance when counting the angle steps of a laser's range, as a fraction of a step."""
 
 _FRUSTUM = 0.15
 """Depth of a drawn camera frustum [m]."""
@@ -94,7 +94,7 @@ def scan(world: CollisionWorld, device: Laser | FlashLidar, T_world_rays: Floats
 
 
 def motion_at(state: BodyState, link: int, point: Floats) -> tuple[Floats, Floats]:
-    """Return the velocity of a point on a link [m/s] and its angular velocity [rad/s], each (3,), in the world."""
+    """Return the velocity of a point on a link [m/s] and the link's angular velocity [rad/s], in the world, (3,)."""
     velocity = state.present_velocities[link]
     arm = point - state.link_transform(link)[:3, 3]
     return velocity[:3] + np.cross(velocity[3:], arm), velocity[3:].copy()

@@ -93,7 +93,7 @@ def _names(translation: Translation) -> Point:
 
 
 def _numbers(translation: Translation) -> Point:
-    """Compare the total mass with the file's; report changed inertias, unlimited joints and missing equalities."""
+    """Compare total mass with the file; report changed inertias, missing torque limits, unconstrained mimic joints."""
     model, point = translation.model, Point("masses, limits, mimic", "")
     given = sum(link.inertial.mass for body in translation.bodies for link in body.links)
     total = float(model.body_mass.sum())

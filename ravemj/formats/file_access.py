@@ -31,7 +31,10 @@ class FileAccess:
 
     @classmethod
     def opened(cls, path: str) -> "FileAccess":
-        """Return the access for a model that its user opens; a text is treated as a file in the working folder."""
+        """Return the access for a model that its user opens.
+
+        If the model is a text in memory, ``path`` is a name in the working folder.
+        """
         return cls((os.path.dirname(path), *data_folders()), is_dropped=False)
 
     @classmethod

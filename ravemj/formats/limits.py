@@ -24,7 +24,7 @@ MOST_NUMBERS = 50_000_000
 """Maximum number of numbers in one list."""
 
 MOST_TRIANGLES = 5_000_000
-"""Maximum number of triangles in a mesh file; a few hundred bytes of USE or instances could produce billions."""
+"""Maximum number of triangles in a mesh file; repeated instances in a small file could give billions."""
 
 MOST_MODEL_TRIANGLES = 4 * MOST_TRIANGLES
 """Maximum number of triangles in all mesh files of a model; each scale of a file counts."""

@@ -36,7 +36,7 @@ def read_file(
     Args:
         path: An OpenRAVE XML file, a COLLADA file, or a mesh file, which becomes a static body. ``robot.dae#arm``
             selects the id ``arm`` in a COLLADA file.
-        given: Additional attributes of the bodies; see ``openrave_xml.given``.
+        given: Additional attributes of the bodies, such as a prefix; see ``openrave_xml.given``.
         metre: Length of a metre in the unit of the scene. Only lengths of COLLADA files, which declare a unit, are
             converted; gravity and other files are not, as in OpenRAVE.
         access: The files that may be read; by default those of a model that its user opens.

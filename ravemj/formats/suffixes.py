@@ -7,8 +7,11 @@ SUFFIXES = {
     "json": (".json",),
     "mjcf": (".xml", ".mjcf"),
 }
-"""Suffixes by format, the usual one first. ``formats/writers`` writes the first three, ``rave/env/saving`` JSON, which
-consists of infos, and ``engine/export`` MJCF, which needs the compiled model."""
+"""Suffixes by format, the usual one first.
+
+``formats/writers`` writes the first three, ``rave/env/saving`` JSON, as OpenRAVE's ``Info`` objects define it, and
+``engine/export`` MJCF, which needs the compiled model.
+"""
 
 
 def format_of(path: str) -> str | None:

@@ -220,7 +220,8 @@ def adjacent_pairs(body: KinBody) -> frozenset[Pair]:
     """Return the pairs of adjacent links, which OpenRAVE's self-collision check ignores.
 
     These are pairs connected by a joint, or by a shortest path with at most one moving joint, unconnected pairs, pairs
-    declared by ``<adjacent>``, and pairs with a link without shapes. A body can disable the first three kinds.
+    declared by ``<adjacent>``, and pairs with a link without shapes. If a body's ``joined_links_adjacent`` is False,
+    the first three kinds are not adjacent.
 
     Returns:
         Pairs of link indices, the smaller one first.

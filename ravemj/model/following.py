@@ -11,8 +11,8 @@ from ravemj.model.scene import KinBody, Manipulator
 def with_equations(body: KinBody, index: int, equations: Equations) -> tuple[KinBody, list[int]]:
     """Return a body with new mimic equations of one joint, and the previous index of each of its joints.
 
-    As in OpenRAVE (gap-15), an active joint that becomes a mimic joint is the last passive joint. A mimic joint whose
-    position equation becomes empty is active, as the last active joint. So DOFs are renumbered.
+    As in OpenRAVE (test gap-15), an active joint that becomes a mimic joint is the last passive joint. A mimic joint
+    whose position equation becomes empty is active, as the last active joint. So DOFs are renumbered.
 
     Raises:
         ArgumentError: the equations are invalid.

@@ -10,7 +10,7 @@ from ravemj.model.manipulators import chain
 from ravemj.model.scene import Geometry, Joint, KinBody, Manipulator, Mesh
 
 DIGITS = 4
-"""Number of decimals in hashes, which is OpenRAVE's."""
+"""Number of decimals to which numbers are rounded before hashing, as in OpenRAVE."""
 
 
 def of_body(body: KinBody) -> str:

@@ -79,8 +79,8 @@ def _acting_order(levels: Sequence[tuple[int, ...]], grounded: Sequence[bool]) -
     """Return the joints in the order in which OpenRAVE evaluates them.
 
     The level of a joint is the depths of its links, the smaller one first. A joint waits for all joints on lower
-    levels, except that a joint at a static link does not wait for others at static links. Ready joints are queued in
-    the order of the file.
+    levels, except that a joint at a static link (``grounded``) does not wait for others at static links. Ready joints
+    are queued in the order of the file.
     """
     by_level = sorted(range(len(levels)), key=lambda index: levels[index])
     unfinished, free = deque(by_level), deque(index for index in by_level if not grounded[index])
@@ -164,7 +164,7 @@ def _parents(neighbours: Sequence[Sequence[int]]) -> list[list[int]]:
 
 
 def _is_swapped(links: tuple[int, int], static_links: Sequence[bool], depths: Sequence[int], *, has_dofs: bool) -> bool:
-    """Return whether the second listed link is the parent; link 0 is never a child (gap-05, gap-06, gap-07)."""
+    """Return whether the second listed link is the parent; link 0 is never a child (tests gap-05, gap-06, gap-07)."""
     first, second = links
     if static_links[second]:  # also in bodies without DOFs
         return not static_links[first] and first != 0

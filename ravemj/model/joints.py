@@ -105,7 +105,8 @@ def directions_at(joint: Joint, values: Sequence[float]) -> list[Vec3]:
 def moving_direction(joint: Joint, axis: int) -> Vec3:
     """Return the direction of an axis in the parent; not for ball joints, which have no single axis.
 
-    A spherical mimic joint moves about x: its one value is the first of its rotation vector (random-xml-41, -102).
+    A spherical mimic joint moves about x: its one value is the first of its rotation vector (tests random-xml-41,
+    -102).
     """
     return _X if joint.kind == "spherical" else joint.axes[axis].direction
 

@@ -93,7 +93,7 @@ WHITE: Rgb = (1.0, 1.0, 1.0)
 ZENITH: Rgb = (0.66, 0.75, 0.86)
 HORIZON: Rgb = (0.91, 0.93, 0.95)
 NADIR: Rgb = (0.74, 0.77, 0.80)
-"""Default background colours: straight up, at the horizon and straight down."""
+"""Default background colours: ``ZENITH`` is straight up, ``HORIZON`` at the horizon, and ``NADIR`` straight down."""
 
 FLOOR: Rgb = (0.79, 0.81, 0.83)
 """Floor colour near the bodies; it fades to the horizon's colour with distance."""

@@ -67,7 +67,7 @@ def check_reach(manipulator: scene.Manipulator, body: scene.KinBody) -> None:
     """Check that each joint of an arm moves its effector, directly or through mimic joints.
 
     Raises:
-        ManipulatorError: a joint does not; OpenRAVE rejects the robot (gap-10, gap-39).
+        ManipulatorError: a joint does not; OpenRAVE rejects the robot (tests gap-10, gap-39).
     """
     effector = manipulator.effector
     if effector is None:

@@ -148,7 +148,7 @@ class MimicJoint(NamedTuple):
         joint: Its index among active, then passive joints.
         expression: The function of ``joint0``, ``joint1``, …
         multiple: The affine form of ``expression`` in one joint, or None.
-        evaluate: Evaluation of ``expression`` if it has no such form, from the first values of all joints.
+        evaluate: Evaluation of ``expression`` from the first values of all joints; None if ``multiple`` is given.
         lower: Its lower limit [rad or m].
         upper: Its upper limit; circular joints have none.
     """

@@ -7,9 +7,9 @@ from ravemj.model.scene import KinBody
 
 
 def mimic_texts(body: KinBody) -> list[dict[str, str]]:
-    """Return for each joint, active ones first, its mimic equation (``follows``) and its partial derivatives.
+    """Return for each joint, active ones first, its mimic equation and partial derivatives, with a description as key.
 
-    Joints that are not mimic joints have none.
+    The key of the equation is ``follows``; joints that are not mimic joints have an empty dictionary.
     """
     names = joint_variables([joint.name for joint in body.all_joints])
     texts_by_joint: list[dict[str, str]] = [{} for _ in body.all_joints]

@@ -179,7 +179,10 @@ class Stream:
             raise RavemjError(f"stopped: {self._reason}")
 
     def _check_feedback(self, wanted: Floats, begin: float) -> None:
-        """Raise if the measured joint values are too old or too far from the motion."""
+        """Raise if the measured joint values are too old or too far from the motion's values ``wanted``.
+
+        Before the first measurement, the age is counted from the time ``begin`` [s].
+        """
         guard, rows = self.guard, self.rows
         if guard.feedback is None:
             return

@@ -145,7 +145,7 @@ def read_manifest(folder: Path) -> dict[str, Any] | None:
 
 
 def prepare(folder: Path, manifest: Mapping[str, Any]) -> None:
-    """Create the folder of a sweep, or check that it belongs to the same sweep.
+    """Create the folder of a sweep with a manifest; if the folder exists, check that it has the same manifest.
 
     Raises:
         ArgumentError: it belongs to another sweep; the message names the difference.

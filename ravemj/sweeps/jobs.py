@@ -231,7 +231,7 @@ JOBS = {
 
 
 def checked_items(work: Work, what: str, items: NDArray[Any]) -> NDArray[Any]:
-    """Return the items of a job, poses of seven numbers [w, x, y, z, tx, ty, tz] as matrices.
+    """Return the items of a job; convert poses of seven numbers [w, x, y, z, tx, ty, tz] to matrices.
 
     Raises:
         ArgumentError: they have another shape, or are not finite.

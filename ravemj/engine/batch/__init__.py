@@ -18,7 +18,9 @@ from ravemj.engine.kinematics import BodyKinematics, fixed_view
 from ravemj.model.inertia import Inertias
 
 POSES, MOTIONS = 60_000, 8_000
-"""Link poses per chunk, for poses only and for Jacobians or dynamics: few enough for the cache, enough for numpy."""
+"""Number of link poses per chunk, for poses only, and for Jacobians or dynamics: few enough for the processor's cache,
+enough for numpy.
+"""
 
 
 FEW_LINKS = 12
@@ -28,7 +30,8 @@ FEW_LINKS = 12
 class Batch:
     """Chain of links of a body, prepared for many joint values. The body's state is neither used nor changed.
 
-    Only the limits of mimic joints are enforced. Within all limits, poses are those of ``SetDOFValues``.
+    Mimic joints are clamped to their limits, other joints are not; within all limits, poses are those of
+    ``SetDOFValues``.
     """
 
     def __init__(self, kinematics: BodyKinematics, dynamics: BodyDynamics) -> None:
@@ -191,7 +194,7 @@ class Batch:
 
 
 def _combined(vectors: Floats, factors: Floats) -> Floats:
-    """Return x v1 + y v2 + z v3 of three arrays; with BLAS, rounding would depend on the number of columns."""
+    """Return x v1 + y v2 + z v3 of three arrays, without BLAS, whose rounding depends on the number of columns."""
     x, y, z = factors.tolist()
     return x * vectors[0] + y * vectors[1] + z * vectors[2]
 

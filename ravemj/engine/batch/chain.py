@@ -20,7 +20,7 @@ ROOT = -1
 
 @dataclass(slots=True)
 class Step:
-    """Element of a chain: root link, joint axis (z of the element's frame), or spherical joint (in parent's axes)."""
+    """Element of a chain: root link, single joint axis (z of the element's frame), or spherical joint."""
 
     kind: str  # ``root``, ``hinge``, ``slider`` or ``spherical``
     parent: int  # the parent step
@@ -59,7 +59,7 @@ class LinkChain:
             self.steps[self._step_of[link]].links.append(link)
 
     def _hang(self, index: int, joint: Joint) -> None:
-        """Add each axis of a joint to the chain as a ``Step``, and attach the joint's child link to the last one."""
+        """Append a ``Step`` for each axis of a joint, and attach the joint's child link to the last of them."""
         kinematics = self._kinematics
         places = kinematics.joint_qpos[index]  # none for a joint that never moves
         step, T_step_parent = self._step_of[joint.parent], self.T_step_links[joint.parent]

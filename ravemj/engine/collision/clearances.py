@@ -68,7 +68,7 @@ class Tested(NamedTuple):
 
 
 class _Cases(NamedTuple):
-    """Pairs of geoms to test, each in one configuration (``rows``), with the bounds known so far; see ``Tested``."""
+    """Tests: each of a pair of geoms in one configuration (``rows``), with the bounds known so far; see ``Tested``."""
 
     rows: Ints
     pairs: Ints
@@ -77,7 +77,7 @@ class _Cases(NamedTuple):
     measured: Floats
 
     def open_of(self, cases: Ints) -> Ints:
-        """Return those of ``cases``, given by index, whose gap may be too small for the travel of the geoms."""
+        """Return those of the tests ``cases``, given by index, with gaps that may be too small for the travel."""
         return cases[self.gaps[cases] <= self.needed[cases]]
 
 
@@ -206,7 +206,7 @@ class Clearances:
         return flat[first] + flat[second]
 
     def _separate(self, cases: _Cases, some: Ints, directions: Floats | None = None, *, exactly: bool = False) -> None:
-        """Raise gap bounds of the cases with the indices ``some`` by separating planes with the normals ``directions``.
+        """Raise the gap bounds of the tests with the indices ``some`` by planes with the normals ``directions``.
 
         These are unit vectors or NaN, shape (k, 3); by default the directions of the last measurements. Unless
         ``exactly``, meshes are replaced by their bounding boxes.
@@ -225,7 +225,7 @@ class Clearances:
         cases.gaps[some] = np.fmax(cases.gaps[some], -ends[:count] - ends[count:])
 
     def _measure(self, cases: _Cases, some: Ints) -> None:
-        """Measure the distances of the cases with the indices ``some``, and raise the bounds of their gaps."""
+        """Measure the distances in the tests with the indices ``some``, and raise their gap bounds."""
         model, data = self._model, self._data
         pairs = cases.pairs[some]
         first, second = self._first[pairs].tolist(), self._second[pairs].tolist()
@@ -254,7 +254,10 @@ class Clearances:
         self._data.geom_xmat[...] = self._rotations[row].reshape(-1, 9)
 
     def _measure_triangles(self, cases: _Cases, some: Ints) -> None:
-        """Measure non-convex meshes by their triangles if their hulls are too close, and raise the gap bounds."""
+        """Measure the distances in the tests ``some`` by the triangles of non-convex meshes; raise their gap bounds.
+
+        It is used if the hulls are too close.
+        """
         for case in some.tolist():
             self._place(int(cases.rows[case]))
             pair = cases.pairs[case]
@@ -264,7 +267,7 @@ class Clearances:
 
 
 def _middles(cases: Ints, pairs: Ints) -> Ints:
-    """Return for each pair of geoms one of its undecided ``cases``: the middle one."""
+    """Return the middle one, by index, of each geom pair's undecided tests ``cases``."""
     order = np.argsort(pairs[cases], kind="stable")
     _, starts, counts = np.unique(pairs[cases][order], return_index=True, return_counts=True)
     return np.sort(cases[order[starts + counts // 2]])

@@ -1,7 +1,7 @@
 """Collision tests of a robot whose base and joints move: a hand that flies to a target and closes.
 
-The model of the world is moved, as in ``moving``. Meanwhile the robot's root links are not fixed to the world, so that
-MuJoCo's collision detection also tests them against bodies without joints.
+The tests move the model of the world, like those of the module ``moving``. Meanwhile the robot's root links are not
+fixed to the world, so that MuJoCo's collision detection also tests them against bodies without joints.
 """
 
 from collections.abc import Generator

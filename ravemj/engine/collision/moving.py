@@ -93,7 +93,7 @@ _MANY = 50
 
 
 def moving_test(body: BodyState, dofs: Sequence[int]) -> "MovingTest | None":
-    """Return a fast collision test of joint values, or None if links are displaced from their joints.
+    """Return a fast collision test of joint values, or None if a link is displaced from the pose given by its joints.
 
     It tests the moved links and grabbed bodies. While it is used, the world must not change otherwise, and the caller
     holds the lock. The test moves the world's model, and possibly the body's joints: ``body.restore`` restores both.
@@ -195,7 +195,7 @@ class _Chosen(NamedTuple):
 
     @classmethod
     def of(cls, world: CollisionWorld, body: BodyState, dofs: Sequence[int], kinds: Sequence[_Kind]) -> "_Chosen":
-        """Return the pairs of a body that ``dofs`` move, for ``kinds`` of queries; cached while bodies only move."""
+        """Return the pairs of a body that ``dofs`` move, for ``kinds`` of queries; cached if only poses change."""
         moved = MovedBy(tuple(dofs))
         return world.kept((body, moved, kinds), lambda: cls._chosen(world, body, moved, kinds))
 
@@ -346,8 +346,8 @@ class MovingTest:
     def of_many(self, values: Floats) -> NDArray[np.bool_]:
         """Return for each configuration, shape (n, dofs), whether the body collides.
 
-        Without grabbed bodies, and if MuJoCo tests all pairs, its threads first count the contacts of all
-        configurations. Those with contacts are tested again, unless MuJoCo's result is already exact.
+        Without grabbed bodies, and if MuJoCo tests all pairs, MuJoCo first counts the contacts of all configurations in
+        several threads. Configurations with contacts are tested again, unless MuJoCo's result is already exact.
         """
         if self._held is not None or self._rest is not None or not self._place.is_plain or len(values) < _MANY:
             return np.array([self(configuration) for configuration in values], dtype=bool)

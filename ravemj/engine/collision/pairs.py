@@ -103,7 +103,7 @@ class Detection:
         return ~((welds == others) | hanging | excluded) & seen
 
     def masks(self, first: Ints, second: Ints) -> Masks:
-        """Return masks that admit pairs of geoms, and possibly more pairs of the same bodies."""
+        """Return masks that admit the given pairs of geoms, and possibly further pairs of the same bodies."""
         types, affinities = np.zeros((2, self.body_count), dtype=np.int32)
         types[self._bodies[first]] = affinities[self._bodies[second]] = 1
         return Masks(types, affinities)

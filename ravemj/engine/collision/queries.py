@@ -99,7 +99,7 @@ def itself(world: CollisionWorld, body: BodyState, asked: LinkPairs = None) -> P
 
 
 def link_and_own_body(world: CollisionWorld, link: LinkOf) -> Pairs:
-    """Return the self-collision pairs, as of ``itself``, that involve a link or its grabbed bodies."""
+    """Return the self-collision pairs of a link's body that involve the link or its grabbed bodies; see ``itself``."""
     body, index = link
     others = range(len(body.scene.links))
     return itself(world, body, frozenset(ordered_pair(index, other) for other in others))
@@ -145,7 +145,7 @@ def _find_touching(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
 
 
 def touching_pairs(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
-    """Return the pairs of links, the smaller index first, that touch and are not adjacent, enabled or not."""
+    """Return the pairs of links, the smaller index first, that touch and are not adjacent; also disabled links."""
 
     def find() -> tuple[Ints, Ints]:
         described = world.model.description(body)
@@ -157,7 +157,7 @@ def touching_pairs(world: CollisionWorld, body: BodyState) -> frozenset[Pair]:
 
 
 def touching_links(world: CollisionWorld, holder: BodyState, body: BodyState) -> frozenset[int]:
-    """Return the indices of a body's links that touch or overlap ``holder``, enabled or not."""
+    """Return the indices of a body's links, also disabled ones, that touch or overlap ``holder``."""
     pairs = world.make_pairs(*cross(*(world.geoms_of_body(either, enabled_only=False) for either in (holder, body))))
     return frozenset(world.owner(first)[1] for first, _ in world.hits(pairs))
 

@@ -89,7 +89,7 @@ class RayCaster:
     def first_hits(
         self, rays: Floats, geoms: Ints | None = None, *, front_facing_only: bool = False
     ) -> tuple[NDArray[np.bool_], Floats]:
-        """Return the first hits of rays, in one call for all rays with the same start.
+        """Return the first hits of rays; rays with the same start are cast together, in one call of MuJoCo.
 
         Args:
             rays: Start and direction of each ray; the length of the direction is the range [m], shape (n, 6).

@@ -39,7 +39,7 @@ _NEAREST = fcl.DistanceRequest(enable_nearest_points=True)
 class TriangleTests:
     """Tests of non-convex meshes of one compiled model.
 
-    A shape inside a closed mesh that touches no triangle does not collide.
+    A shape inside a closed mesh does not collide if it touches none of the triangles.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:

@@ -17,7 +17,7 @@ from ravemj.model.scene import Joint
 
 
 class DerivativeRows:
-    """Derivatives with respect to MuJoCo's velocities, such as a Jacobian, or generalised forces.
+    """Array for a Jacobian with respect to MuJoCo's velocities, or for generalised forces along these velocities.
 
     Attributes:
         matrix: MuJoCo's output, shape (..., nv).
@@ -398,7 +398,7 @@ class BodyDynamics:
         gravity: Vec3,
         external: Mapping[int, Floats] | None = None,
     ) -> tuple[Floats, Floats, Floats]:
-        """Return the components of ``inverse`` due to accelerations, to joint velocities, and to all else."""
+        """Return the components of ``inverse`` due to accelerations, joint velocities, and the rest (gravity etc.)."""
         self._set_gravity(gravity)
         self._set_velocities(velocities)
         self._set_accelerations(accelerations)

@@ -27,7 +27,7 @@ SMALL = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Coupling:
-    """P and its derivative at given joint values, of one or many configurations (last axis)."""
+    """Coupling matrix P and its derivative at given joint values, of one or many configurations (last axis)."""
 
     dof: int  # number of DOFs
     count: int  # number of velocity coordinates
@@ -37,7 +37,7 @@ class Coupling:
     second: list[tuple[int, int, int, Floats]]  # of P's derivative: coordinate, DOF that changes, DOF of column, value
 
     def forward(self, rates: Floats) -> Floats:
-        """Return the coordinate velocities, shape (coordinates, ...), of DOF velocities (dof, ...): P times these."""
+        """Return P times the DOF velocities ``rates``, shape (dof, ...): the velocities of the coordinates."""
         moved = np.zeros((self.count, *rates.shape[1:]))
         moved[self.coordinates] = rates[self.dofs]
         for coordinate, dof, value in self.first:
@@ -45,7 +45,7 @@ class Coupling:
         return moved
 
     def backward(self, forces: Floats) -> Floats:
-        """Return the DOF forces, shape (dof, ...), of forces on coordinates (coordinates, ...): P^T times these."""
+        """Return P^T times the coordinate forces ``forces``, shape (coordinates, ...): the forces on the DOFs."""
         collected = np.zeros((self.dof, *forces.shape[1:]))
         collected[self.dofs] = forces[self.coordinates]
         for coordinate, dof, value in self.first:
@@ -53,7 +53,7 @@ class Coupling:
         return collected
 
     def bias(self, rates: Floats) -> Floats:
-        """Return dP/dt dq/dt, the accelerations at constant DOF velocities, shape (coordinates, ...)."""
+        """Return the coordinates' accelerations at constant DOF velocities, dP/dt dq/dt, shape (coordinates, ...)."""
         bias = np.zeros((self.count, *rates.shape[1:]))
         for coordinate, along, dof, value in self.second:
             bias[coordinate] += value * rates[along] * rates[dof]

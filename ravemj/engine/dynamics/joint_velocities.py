@@ -13,7 +13,10 @@ _ONES = np.ones(3)
 
 
 class JointAxes:
-    """Axes of joints and the links that they connect; ``..._ids`` are MuJoCo's indices, others link indices."""
+    """Axes of joints and the links that they connect.
+
+    Links are given by link index; ``ids`` and attributes named ``..._ids`` contain MuJoCo's indices.
+    """
 
     def __init__(self, joints: Sequence[Joint], body_ids: Ints, ids: Ints | None = None) -> None:
         """Store joints and MuJoCo's indices of their axes; ``ids`` is None unless each joint has exactly one axis."""

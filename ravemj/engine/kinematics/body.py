@@ -148,7 +148,7 @@ class BodyKinematics:
         ]
 
     def _set_free_passive(self) -> None:
-        """Set passive joints that are not mimic joints to their first values; afterwards only physics moves them."""
+        """Set passive joints that are not mimic joints to their initial values; afterwards only physics moves them."""
         body, of_passive = self.body, self.joint_qpos[len(self.first_dofs) :]
         for joint, values, places in zip(body.passive_joints, self._passive_values, of_passive, strict=True):
             if joint.mimic is not None or not places:

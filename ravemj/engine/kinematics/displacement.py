@@ -59,7 +59,7 @@ def _inverses(transforms: Floats) -> Floats:
 
 
 def fix_to_parents(model: mujoco.MjModel, data: mujoco.MjData, positions: Floats, quaternions: Floats) -> None:
-    """Move joint axes to their parent links, as in OpenRAVE (random-api-234).
+    """Move joint axes to their parent links, as in OpenRAVE (test random-api-234).
 
     MuJoCo defines axes in the child links; those of ``hinge2`` and spherical joints stay there. ``mj_kinematics`` must
     have run. ``positions`` and ``quaternions`` (wxyz) are the rest poses of links in their parents, shapes (nbody, 3)

@@ -38,7 +38,7 @@ def read_mjcf(path: str, content: bytes, given: Attributes, access: FileAccess) 
     Args:
         path: The file, or a name for the text in messages.
         content: Its text.
-        given: Attributes of the bodies; see ``openrave_xml.given``.
+        given: Attributes of the bodies passed by the caller, such as a prefix; see ``openrave_xml.given``.
         access: The files that may be read.
 
     Returns:

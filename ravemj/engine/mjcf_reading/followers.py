@@ -79,7 +79,10 @@ def _followers(model: mujoco.MjModel) -> Iterator[_Follower]:
 
 
 def _of_tendons(model: mujoco.MjModel, first: int, second: int, polynomial: list[float]) -> Iterator[_Follower]:
-    """Yield the equation of the first joint of fixed tendon ``first``, coupled to ``second`` (-1: none), if linear."""
+    """Yield the equation of two coupled fixed tendons, solved for the first joint of ``first``, if it is linear.
+
+    ``second`` is -1 if there is no second tendon; ``polynomial`` contains MuJoCo's coefficients of the coupling.
+    """
     own = _joints_of(model, first)
     other = {} if second < 0 else _joints_of(model, second)
     if own is None or other is None or not own or (other and any(polynomial[2:])):

@@ -35,7 +35,10 @@ def quaternion(numbers: Iterable[float]) -> Wxyz:
 
 
 def pose(written: tuple[ArrayLike, ArrayLike], compiled: tuple[ArrayLike, ArrayLike]) -> Pose:
-    """Return a pose from positions and quaternions; see ``as_written``."""
+    """Return a pose, given as position and quaternion: ``written`` if it equals ``compiled`` up to rounding.
+
+    The comparison is separate for position and quaternion; see ``as_written``.
+    """
     return Pose(vector(as_written(written[0], compiled[0])), quaternion(as_written(written[1], compiled[1])))
 
 
@@ -50,6 +53,6 @@ def tensor(moments: Floats, wxyz: Wxyz) -> Rows:
 
 
 def symmetric(matrix: Floats) -> Rows:
-    """Return a 3x3 matrix as exactly symmetric rows."""
+    """Return the rows of a nearly symmetric 3x3 matrix, made exactly symmetric."""
     first, second, third = ((matrix + matrix.T) / 2).tolist()
     return vector(first), vector(second), vector(third)

@@ -34,7 +34,10 @@ _COLOUR_NEAR = 1e-6
 def own_bodies(
     reader: TreeReader, touching: Sequence[Pair], diagnostics: Diagnostics
 ) -> list[tuple[KinBody, set[int]]]:
-    """Return the bodies in the model's texts, each with MuJoCo's indices of its root bodies."""
+    """Return the bodies in the model's texts, each with MuJoCo's indices of its root bodies.
+
+    ``touching`` are the pairs of MuJoCo bodies that touch at the start: excluding them does not make links adjacent.
+    """
     bodies: list[tuple[KinBody, set[int]]] = []
     for text in reader.compiled.spec.texts:
         if not text.name.startswith(PREFIX):

@@ -91,7 +91,7 @@ class TreeReader:
         return pose((written.pos, written.quat), (model.body_pos[body], model.body_quat[body]))
 
     def written_joint(self, joint: int) -> Any:  # noqa: ANN401 - MuJoCo gives no type
-        """Return a joint as it was written."""
+        """Return a joint of MuJoCo's editable spec, with the values in the file."""
         return self._joints.written[joint]
 
     def _world(self) -> BodyTree:

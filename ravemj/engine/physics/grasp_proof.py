@@ -27,7 +27,7 @@ LIFT, SHAKE = 0.1, 5.0
 """Height to which the hand is lifted [m], and amplitude of its acceleration along each axis afterwards [m/s^2]."""
 
 MOST_MOVED, MOST_TURNED = 0.005, np.radians(5.0)
-"""Largest translation [m] and rotation [rad] in the hand of an object that is held."""
+"""Maximum translation [m] and rotation [rad] in the hand with which an object counts as held."""
 
 _PRESSING, _LIFTING, _SHAKING = 0.5, 0.5, 1.0  # s; the last for each axis
 _TIMESTEP = 0.001  # s
@@ -103,7 +103,7 @@ class _Experiment:
         self._pressed = self._pressing_forces(hand_names)
 
     def _edit(self, spec: mujoco.MjSpec, written: Mjcf) -> None:
-        """Remove the joints of the arm, damp the closing joints, and lock the others of the hand."""
+        """Remove the joints of the arm, damp the closing joints, and lock the other joints of the hand."""
         signs = dict(zip(self._arm.gripper_dofs, self._arm.chucking_direction, strict=True))
         removed: set[str] = set()
         dof = 0
@@ -190,7 +190,10 @@ class _Experiment:
 
 
 def _accelerations(gravity: Floats) -> Iterator[Floats]:
-    """Yield the acceleration of the hand in the world at each time step, shape (3,): up, then back and forth."""
+    """Yield the acceleration of the hand in the world at each time step, shape (3,): up, then back and forth.
+
+    Up is the direction opposite to ``gravity``.
+    """
     length = float(np.linalg.norm(gravity))
     up = -gravity / length if length else np.array([0.0, 0.0, 1.0])
     count = round(_LIFTING / _TIMESTEP)
@@ -208,5 +211,5 @@ def _fixed(robot: KinBody) -> KinBody:
 
 
 def _free(body: KinBody) -> KinBody:
-    """Return a body without static links."""
+    """Return a body with all links marked as not static."""
     return replace(body, links=tuple(replace(link, static=False) for link in body.links))

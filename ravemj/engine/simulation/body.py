@@ -332,7 +332,10 @@ class BodyState:
             self._dynamics = self._batch = None  # the value of a multivalued mimic equation depends on the limits
 
     def remake(self, scene: KinBody) -> None:
-        """Replace the description; DOFs, welds or equations may differ. Links move when values are next set."""
+        """Replace the description, also by one with other DOFs, welds or mimic equations.
+
+        The links move when values are next set.
+        """
         saved = self.configuration()
         self.simulation.forget_model()
         self._forget_kinematics()

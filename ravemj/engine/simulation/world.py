@@ -72,7 +72,7 @@ class Simulation:
         return BodyState(scene, self)
 
     def add(self, scene: KinBody) -> BodyState:
-        """Add a new body in its loaded configuration; raises the errors of ``insert``."""
+        """Create a body in its loaded configuration, and add it to the world; raises the errors of ``insert``."""
         body = self.create(scene)
         self.insert(body)
         return body
@@ -178,7 +178,7 @@ class Simulation:
     def copy(self, other: "Simulation", *, bodies: bool = True) -> dict[BodyState, BodyState]:
         """Replace bodies, view and gravity by copies of another world's. The caller holds both locks.
 
-        Joints are clamped to their limits, as in OpenRAVE (random-api-232). Without ``bodies``, this world becomes
+        Joints are clamped to their limits, as in OpenRAVE (test random-api-232). Without ``bodies``, this world becomes
         empty.
 
         Returns:

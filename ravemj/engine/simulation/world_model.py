@@ -109,5 +109,5 @@ class WorldModel(Compiled):
 
 
 def _is_at_reference(body: KinBody) -> bool:
-    """Return whether all joint values of the loaded body are those for which MuJoCo compiles the poses."""
+    """Return whether all joint values of the loaded body are the reference values, for which MuJoCo compiles poses."""
     return all(axis.value == axis.reference for joint in body.all_joints for axis in joint.axes)

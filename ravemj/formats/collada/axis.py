@@ -66,7 +66,7 @@ class AxisReader(NamedTuple):
         return math.inf
 
     def value(self, written: float | None) -> float:
-        """Return the axis value [rad or m] that a binding specifies."""
+        """Convert the axis value in a binding to rad or m; 0 if it is missing or not finite."""
         return 0.0 if written is None or not math.isfinite(written) else written * self._speed_unit()
 
     def read(self, direction: Vec3) -> Axis:

@@ -31,7 +31,7 @@ class AxisBinding:
 
     Attributes:
         owner: The instance in the kinematics scene whose parameter names the axis, or None.
-        through: The instances on the path of the reference.
+        through: The instance elements that the path to the axis passes through.
         axis: The ``<revolute>`` or ``<prismatic>``.
         node: The node, or None if it is missing.
         value: The value as written.

@@ -93,7 +93,7 @@ class BodyWriter:
                             out.append(partial)
 
     def _partials(self, joint: Joint, text: str) -> Iterator[tuple[str, XmlText]]:
-        """Yield variable and equation of each partial derivative in ``text``; invalid ones are reported only."""
+        """Yield variable and equation of each partial derivative in ``text``; report invalid ones, and omit them."""
         names, known = self._variables, set(self._variables.values())
         try:
             equations = partials(text)

@@ -22,7 +22,7 @@ from ravemj.formats.meshes.collada.document import ColladaDocument, Element, chi
 from ravemj.model.scene import KinBody
 
 _MODEL_PARTS = {"instance_kinematics_model", "instance_joint"}
-"""Instances that the path of an axis must contain, since the same axis may occur in several of them."""
+"""Tags of the instances that an axis's path must contain, since several instances may contain the same axis."""
 _TOP = "external_node"
 """Prefix of the numbered names of outermost nodes. Inner nodes have other names, so that paths are unique."""
 

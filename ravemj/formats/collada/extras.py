@@ -1,4 +1,4 @@
-"""``<extra>`` elements of OpenRAVE, and of ravemj for properties that neither COLLADA nor OpenRAVE's can represent."""
+"""``<extra>`` elements: OpenRAVE's, and ravemj's for properties that neither COLLADA nor OpenRAVE's can represent."""
 
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
@@ -11,7 +11,7 @@ PROFILE = "ravemj"
 
 
 def extras(element: Element | None, kind: str = PROFILE) -> Iterator[tuple[Element, Element]]:
-    """Yield the ``<extra>`` elements of a type in an element, each with its technique."""
+    """Yield the ``<extra>`` elements of a type in an element, each with its ``<technique>``."""
     for extra in children(element, "extra"):
         if extra.get("type") == kind:
             for technique in children(extra, "technique"):
@@ -20,7 +20,7 @@ def extras(element: Element | None, kind: str = PROFILE) -> Iterator[tuple[Eleme
 
 
 def own_techniques(element: Element | None) -> Iterator[Element]:
-    """Yield the techniques of ravemj's extras in an element."""
+    """Yield the ``<technique>`` elements of ravemj's extras in an element."""
     return (technique for _, technique in extras(element))
 
 

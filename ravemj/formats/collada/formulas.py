@@ -57,7 +57,7 @@ class _FormulaReader:
     steps: Iterator[int] = field(default_factory=itertools.count)
 
     def read(self, formula: Element) -> None:
-        """Read a formula as the mimic equations of its joint; disable the joint if the formula is invalid."""
+        """Read a formula as the mimic equations of its joint; if it is invalid, disable the joint: it has no DOF."""
         path = "".join(words(child(formula, "target", "param")))
         joint = self._joint(path)
         if joint is None:

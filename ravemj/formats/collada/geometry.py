@@ -169,7 +169,10 @@ class GeometryReader:
 
 
 def _shape(element: Element, metres: float) -> Shape | None:
-    """Return the primitive shape of an element with one child per size; None if a size is missing or not finite."""
+    """Return the primitive shape of an element with one child per size; None if a size is missing or not finite.
+
+    ``metres`` is the length of the file's unit [m].
+    """
     kind = _PRIMITIVES[local_name(element)]
     sizes: dict[str, object] = {}
     for name, form, optional in kind.sizes():

@@ -128,7 +128,10 @@ class ModelReader:
             self._read_link(link, self._root, self._T_world_root)
 
     def settle(self, others: "list[ModelReader]") -> None:
-        """Add joints and mimic equations to the body, after all models of the body are read."""
+        """Add joints and mimic equations to the body, after all models of the body are read.
+
+        ``others`` are the readers of these models.
+        """
         self._close_loops([end for reader in others for end in reader.ends])
         for joint in sorted(self._found, key=lambda joint: joint.place):  # OpenRAVE's order, where it wrote one
             self.joints |= dict.fromkeys(joint.keys, len(self._body.joints))

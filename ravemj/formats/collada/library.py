@@ -44,7 +44,7 @@ class ResolvedReference(NamedTuple):
 
     Attributes:
         element: The element.
-        through: The instances on the path of the reference.
+        through: The instance elements that the path to it passes through.
     """
 
     element: Element
@@ -103,13 +103,13 @@ class Library:
         return self.document_of(element).source(element)._replace(included_from=self._included_from)
 
     def warn(self, code: str, message: str, element: Element, hint: str = "") -> None:
-        """Report a warning about an element, identified by its nearest id; repeated warnings are dropped."""
+        """Report a warning about an element, with its ``label`` in the message; repeated warnings are dropped."""
         if (element, message) not in self._reported:
             self._reported.add((element, message))
             self.diagnostics.warn(code, f"{label(element)}: {message}", self.source(element), hint)
 
     def error(self, message: str, element: Element, hint: str = "") -> SourceError:
-        """Return an error about an element, identified by its nearest id."""
+        """Return an error about an element, with its ``label`` in the message."""
         return SourceError(f"{label(element)}: {message}", self.source(element), hint)
 
     def follow(self, element: Element, *kinds: str, attribute: str = "url") -> Element | None:

@@ -1,7 +1,7 @@
 """Readers of mesh files, which return triangles and colours, and checks of what MuJoCo can load.
 
 ``read_mesh`` reads STL, OBJ, COLLADA, Inventor and VRML itself, and PLY, OFF and glTF through trimesh, with the same
-triangles, parts and colours as OpenRAVE. This package is independent of links.
+triangles, parts and colours as OpenRAVE. This package knows only meshes, not the links that they belong to.
 
 The readers are imported on first use: most models have no meshes.
 """

@@ -50,7 +50,7 @@ def cached_file(
         path: The file.
         kind: Additional key of the cache, such as the suffix.
         read: Parser of the file's content; returns the parts, and the other files that it has read.
-        access: The files that may be read; entries that refer to other files are not used.
+        access: The files that may be read; cache entries that refer to others are not used.
 
     Raises:
         SourceError: The file cannot be read.

@@ -95,7 +95,7 @@ def _halves(points: Floats, starts: Ints) -> Ints:
 def clip_ears(polygon: Floats) -> Ints:
     """Triangulate one polygon by ear clipping; repeated consecutive corners are ignored.
 
-    The search for the next ear continues after the last one, as in OpenRAVE's importer (conformance case ``gap-74``).
+    The search for the next ear continues after the last one, as in OpenRAVE's importer (conformance test gap-74).
 
     Args:
         polygon: Its corners in order, shape (n, 3).

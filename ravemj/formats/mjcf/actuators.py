@@ -10,7 +10,7 @@ Actuators = Literal["position", "velocity", "torque"]
 
 
 def joint_motor(axis: Axis, armature: float = 0.0) -> dict[str, Attribute | None]:
-    """Return the joint attributes of its motor, with an additional ``armature`` [kg m^2 or kg]."""
+    """Return the MJCF joint attributes for an axis's motor; add ``armature`` [kg m^2 or kg] to its rotor inertia."""
     return {
         "armature": axis.armature + armature or None,
         "damping": axis.viscous_friction or None,

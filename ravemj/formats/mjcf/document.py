@@ -28,7 +28,7 @@ ASSETS = "assets"
 """Folder of the meshes, beside the MJCF file."""
 
 MECHANISM_MEMORY = "1M"
-"""Working memory of a model without contacts; MuJoCo's default per body would be several times the model's size."""
+"""Working memory of a model without contacts; MuJoCo's default would be several times as large as the model."""
 
 _MANY_BODIES = 1000
 
@@ -160,7 +160,10 @@ class _UniqueNames:
     )
 
     def give(self, kind: str, body: KinBody, name: str) -> str:
-        """Reserve and return a unique name: ``name`` or, with a warning, ``name`` after the body's name."""
+        """Reserve and return a unique name: ``name`` or, if it is in use, ``name`` prefixed by the body's name.
+
+        A warning is given for a prefixed name.
+        """
         unique = name
         while unique in self.taken[kind]:
             unique = f"{body.name}/{unique}"
@@ -285,7 +288,7 @@ class _MjcfWriter:
         return tuple(count for count, _ in written), any(collides for _, collides in written)
 
     def _open_link(self, index: int, body: KinBody, link: int, merging: Merging, *, is_free: bool) -> None:
-        """Open the body of a link, or write the site of a merged link."""
+        """Write the start tag of a link's ``<body>`` or, for a merged link, a site."""
         described, pose = body.links[link], merging.pose_in_parent(link)
         self.bodies.comment(self._source_text(described.source), described.source)
         attributes = {"name": merging.names[link], **pose_attributes(pose)}

@@ -1,8 +1,8 @@
 """``<exclude>``: the pairs of links that MuJoCo would test for collisions and OpenRAVE does not.
 
 MuJoCo ignores pairs within a weld group, whose links no joint separates, and pairs of a group and its parent group,
-except the world's. Excluding only the other pairs keeps the text small: its size is linear in the number of links, for
-a robot as for a room of furniture. Only movable links without a joint between them are excluded pair by pair.
+except the world's. Excluding only the other pairs keeps the text small: its size is linear in the number of links.
+Only movable links without a joint between them are excluded pair by pair.
 """
 
 from collections.abc import Iterator, Mapping

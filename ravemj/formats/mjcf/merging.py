@@ -80,7 +80,7 @@ class Merging:
         return body.links[joint.parent].T_world_link.inverse() @ body.links[link].T_world_link
 
     def inertial(self, link: int, own: Inertial) -> Inertial:
-        """Return the mass properties of a link together with its merged links."""
+        """Return the mass properties of a link together with its merged links; ``own`` are those of the link alone."""
         parts = [
             (pose, legal_inertial(self._body.links[merged].inertial))
             for merged, (carrier, pose) in self._merged.items()

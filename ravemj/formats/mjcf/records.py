@@ -85,6 +85,8 @@ def scene_text(content: scene.Scene, touching: Sequence[tuple[str, str]]) -> str
 def read_body(text: str, meshes: Callable[[str], scene.Mesh], source: Source) -> tuple[scene.KinBody, StoredNames]:
     """Read a body, without expressions of mimic joints; omitted masses are ``UNKNOWN``.
 
+    ``meshes`` returns a mesh by the name of its ``<mesh>`` element.
+
     Raises:
         ValueError: the text is damaged.
     """
@@ -100,7 +102,7 @@ def read_body(text: str, meshes: Callable[[str], scene.Mesh], source: Source) ->
 
 
 def read_scene(text: str, source: Source) -> tuple[scene.Scene, tuple[tuple[str, str], ...]]:
-    """Read everything in a scene except bodies, and the pairs of names that touch at the start.
+    """Read everything in a scene except bodies, and the pairs of links, by name, that touch at the start.
 
     Raises:
         ValueError: the text is damaged.

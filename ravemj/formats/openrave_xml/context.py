@@ -260,7 +260,7 @@ class Placed:
         self.placement.translate(element, self.context.diagnostics)
 
     def rotate(self, element: Element) -> None:
-        """Read a rotation."""
+        """Read an element that specifies a rotation, such as ``<RotationAxis>``."""
         self.placement.rotate(element, self.context.diagnostics)
 
 

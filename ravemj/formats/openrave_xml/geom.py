@@ -211,7 +211,7 @@ def _trimesh(geom: _Geom, element: Element, scope: GeometryScope) -> list[Geomet
 def _lost(file: MeshFile | None) -> tuple[MeshPart, ...]:
     """Return the mesh parts that OpenRAVE creates for a missing file.
 
-    For most absolute paths, this is a reddish part (gap-72), else there is none (gap-71).
+    For most absolute paths, this is a reddish part (test gap-72), else there is none (test gap-71).
     """
     if file is None or not os.path.isabs(file.name) or file.name.lower().endswith(".stl") or os.path.isfile(file.name):
         return ()

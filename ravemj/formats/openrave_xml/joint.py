@@ -49,7 +49,7 @@ class _JointElement:
     parameters: Parameters = NO_PARAMETERS
 
     def read_body(self, element: Element) -> None:
-        """Read the name of the joint's first link, then of its second, case-insensitively (errors-50)."""
+        """Read the name of the joint's first link, then of its second, case-insensitively (test errors-50)."""
         name = word(element, self.context.diagnostics)
         link = self.body.find_link_any_case(name)
         if link is None:
@@ -68,7 +68,7 @@ class _JointElement:
         self.anchor = hadamard(self.scale, vector(element, self.context.diagnostics, self.anchor))
 
     def read_direction(self, element: Element) -> None:
-        """Read an axis direction: ``axis`` or, if a joint has two, ``axis1`` and then ``axis2`` (random-xml-127)."""
+        """Read an axis direction: ``axis`` or, for two axes, ``axis1`` and then ``axis2`` (test random-xml-127)."""
         index = 1 if element.tag == "axis2" else 0
         if self.kind == "hinge2" and index == 1 and 0 not in self.directions:
             raise SourceError(
@@ -104,7 +104,7 @@ class _JointElement:
                 self.context.diagnostics.warn("ignored-tag", message, element.source)
 
     def read_stop(self, element: Element) -> None:
-        """Read the deprecated ``lostop`` or ``histop`` [deg, or m for sliders], which reverses all axes (joint-17)."""
+        """Read the deprecated ``lostop`` or ``histop`` [deg, sliders: m], which reverses all axes (test joint-17)."""
         factor = 1.0 if self.kind == "slider" else math.pi / 180
         limit = "lower" if element.tag == "lostop" else "upper"
         before = [axis[limit] for axis in self.axes]
@@ -115,7 +115,7 @@ class _JointElement:
         self.stops = True
 
     def read_resolution(self, element: Element) -> None:
-        """Read the resolution of each axis, or one number for all axes (gap-38)."""
+        """Read the resolution of each axis, or one number for all axes (test gap-38)."""
         self._set_all(element, "resolution", 1.0 if self.kind == "slider" else math.pi / 180)
         if len(leading_numbers(element.text).values) == 1:
             for axis in self.axes:
@@ -131,7 +131,7 @@ class _JointElement:
         self.parameters = self.context.with_parameter(self.parameters, element)
 
     def _set_all(self, element: Element, name: str, factor: float) -> None:
-        """Read a number for each axis, by default the axis's present value; multiply either by ``factor`` (gap-38)."""
+        """Read a number for each axis, by default the axis's value so far; multiply it by ``factor`` (test gap-38)."""
         before = [axis[name] if name in axis else float(getattr(_PLAIN_AXIS, name)) for axis in self.axes]
         values = numbers(element, len(self.axes), self.context.diagnostics, before)
         if name in _NOT_NEGATIVE:
@@ -269,7 +269,8 @@ def read_joint(body: BodyBuilder, element: Element, context: Context) -> None:
 def _direction(reader: _JointElement, index: int, frame: Pose, *, exchanged: bool) -> Vec3:
     """Return the direction of a joint's axis, or OpenRAVE's default direction, in the first link's frame.
 
-    The default is z, whatever the order of the links (errors-26); a slider without an axis gets 0 and does not move.
+    If the two links were ``exchanged``, a given direction is reversed. The default is z, whatever the order of the
+    links (test errors-26); a slider without an axis gets the zero vector and does not move.
     """
     direction = _UNIT[index] if reader.kind == "spherical" else reader.directions.get(index)
     if direction is not None:
@@ -281,7 +282,7 @@ def _direction(reader: _JointElement, index: int, frame: Pose, *, exchanged: boo
 
 
 def frame_of_link(body: BodyBuilder, element: Element, context: Context) -> Pose:
-    """Return the pose of the link named by an ``<offsetfrom>``; an unknown name is ignored (errors-29, -30)."""
+    """Return the pose of the link named by an ``<offsetfrom>``; an unknown name is ignored (tests errors-29, -30)."""
     name = word(element, context.diagnostics)
     link = body.find_link(name)
     if link is None:

@@ -90,7 +90,7 @@ class JointWriter:
             write_parameters(self._out, joint.parameters)
 
     def _write_frame(self, body: KinBody, joint: Joint) -> None:
-        """Write the anchor and axes of a joint in its parent's frame; a slider's in the frame of `_slider_frame`."""
+        """Write anchor and axes of a joint in its parent's frame; those of a slider in that of ``_slider_frame``."""
         frame = self._slider_frame(joint) if joint.kind == "slider" else joint.parent
         self._out.element("offsetfrom", self._names.links[frame])
         turns_with_child = joint.static and len(body.joints) > 0  # OpenRAVE moves the frame of a weld to its child
@@ -113,7 +113,10 @@ class JointWriter:
             self._diagnostics.warn("not-written", message, joint.source)
 
     def _slider_frame(self, joint: Joint) -> int:
-        """Return the frame of a slider: the child link if only its origin is at the anchor, else the parent link."""
+        """Return the link in whose frame a slider is written.
+
+        It is the child if only the child's origin is at the anchor, else the parent.
+        """
         parent, child = self._poses[joint.parent], self._poses[joint.child]
         anchor = parent.apply(joint.anchor)
         near = [math.dist(link.position, anchor) < _NEAR for link in (parent, child)]

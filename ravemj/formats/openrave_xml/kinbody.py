@@ -110,7 +110,8 @@ class _Scope(Placed):
     def _join_links(self, element: Element) -> None:
         """Read the KinBody attribute ``makeJoinedLinksAdjacent``; the element that opens last has precedence.
 
-        An element that includes a file opens after the root of the file. See gap-17, gap-18 and gap-19.
+        An element that includes a file opens after the root of the file. See the conformance tests gap-17, gap-18 and
+        gap-19.
         """
         if element.tag == "robot":
             return
@@ -178,7 +179,7 @@ class _Scope(Placed):
         read_attached_sensor(self.body, element, self.context)
 
     def read_controller(self, element: Element) -> None:
-        """Warn that a ``<Controller>`` is ignored; after joints, it is an error as in OpenRAVE (robot-24)."""
+        """Warn that a ``<Controller>`` is ignored; after joints, it is an error as in OpenRAVE (test robot-24)."""
         if self.body.joints:
             hint = "leave it out: robots have a controller without asking"
             raise SourceError("OpenRAVE cannot attach a controller while it reads a robot", element.source, hint)

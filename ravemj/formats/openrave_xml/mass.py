@@ -30,7 +30,7 @@ class MassRule:
     Attributes:
         kind: ``mimicgeom``, ``sphere``, ``box`` or ``custom``.
         density: Density [kg/m^3].
-        total: Total mass [kg], which is used ``by_total``.
+        total: Total mass [kg]; used only if ``by_total``.
         by_total: Whether the mass is given by the total instead of the density.
         half_extents: Half extents of the box; the first is the radius of the sphere.
         custom_mass: Mass of a ``custom`` mass [kg]: the last total in the Body, not that of a KinBody.
@@ -59,7 +59,7 @@ class _Mass:
     scale: Vec3
 
     def density(self, element: Element) -> None:
-        """Read a ``<density>``; it does not affect a custom mass, but does affect the next Mass (gap-21)."""
+        """Read a ``<density>``; it does not affect a custom mass, but does affect the next Mass (test gap-21)."""
         self.rule.density = single(number(element, self.diagnostics, self.rule.density))
         self.rule.by_total = False
 
@@ -90,7 +90,7 @@ class _Mass:
         self.rule.axes = normalize(ROTATIONS["quat"](element, self.diagnostics))
 
     def extents(self, element: Element) -> None:
-        """Accept and ignore ``<extents>``, as OpenRAVE does in a Body (mass-11)."""
+        """Accept and ignore ``<extents>``, as OpenRAVE does in a Body (test mass-11)."""
 
 
 MASS_ATTRIBUTES = {"type": "mimicgeom, sphere, box, custom"}
@@ -113,7 +113,10 @@ MASS_TAGS: dict[str, Tag[_Mass]] = {
 
 
 def read_mass(element: Element, before: MassRule | None, scale: Vec3, context: Context) -> MassRule:
-    """Read a ``<Mass>`` of a Body; return the rule of earlier elements, ``before``, with the values of this one."""
+    """Read a ``<Mass>`` of a Body; return the rule of earlier elements, ``before``, updated by this element.
+
+    Lengths are multiplied by the factors ``scale`` along x, y and z.
+    """
     context.check_attributes(element, MASS_ATTRIBUTES, {})
     kind = element.attributes.get("type", "sphere").lower()
     if kind not in {"mimicgeom", "sphere", "box", "custom"}:  # mass-24
@@ -159,7 +162,7 @@ class DefaultMass:
             self.context.diagnostics.warn("openrave-bug", message, element.source, "write <density>")
 
     def read_number(self, element: Element) -> None:
-        """Read a ``<density>`` or a ``<total>``, which are stored in the same variable (mass-21)."""
+        """Read a ``<density>`` or a ``<total>``, which are stored in the same variable (test mass-21)."""
         self.number = single(number(element, self.context.diagnostics, self.number))
         self.is_total = element.tag == "total"
 
@@ -169,7 +172,7 @@ class DefaultMass:
         self.half_extents = (number(element, self.context.diagnostics, before), y, z)
 
     def extents(self, element: Element) -> None:
-        """Read the half extents of a box; for other kinds and after a total they have no effect (gap-24)."""
+        """Read the half extents of a box; for other kinds and after a total they have no effect (test gap-24)."""
         half_extents = vector(element, self.context.diagnostics, self.half_extents)
         if self.kind == "box" and not self.is_total:
             self.half_extents = half_extents
@@ -203,8 +206,8 @@ def link_inertial(rule: MassRule | None, geometries: Sequence[Geometry]) -> Iner
 def _sum_of_shapes(rule: MassRule, geometries: Sequence[Geometry]) -> Inertial:
     """Return the combined mass properties of all shapes, by the parallel axis theorem.
 
-    With a total mass, OpenRAVE scales the masses of the shapes but not their inertias (mass-06). It divides the total
-    by 0 if all shapes lack a volume (random-xml-132), but not if there are no shapes (gap-25).
+    With a total mass, OpenRAVE scales the masses of the shapes but not their inertias (test mass-06). It divides the
+    total by 0 if all shapes lack a volume (test random-xml-132), but not if there are no shapes (test gap-25).
     """
     density = TOTAL_DENSITY if rule.by_total else rule.density
     solids = [geometry.shape.mass_moments(density) for geometry in geometries]

@@ -95,7 +95,10 @@ def uniform(scale: Vec3, source: Source, context: Context) -> float:
 
 
 def _join(body: BodyBuilder, other: BodyBuilder) -> None:
-    """Merge ``other`` into ``body`` by link names; first move it so that its first link fits the equally named one."""
+    """Merge ``other`` into ``body`` by link names.
+
+    If ``body`` has a link with the name of the first link of ``other``, move ``other`` so that the two coincide.
+    """
     places = [body.find_link(link.name) for link in other.links]
     T_body_other = Pose()
     if places[0] is not None:

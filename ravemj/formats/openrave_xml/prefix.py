@@ -33,7 +33,7 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
         body: The body.
         marks: The snapshot.
         whole: Whether to rename, besides links and joints, joints in equations, manipulators and sensors as well:
-            OpenRAVE does so in a Robot, and not in a KinBody (mimic-13, environment-07).
+            OpenRAVE does so in a Robot, and not in a KinBody (tests mimic-13, environment-07).
     """
     joints = body.joints[marks.joints :]
     renamed = {joint.name: prefix + joint.name for joint in joints if joint.name}
@@ -66,9 +66,9 @@ def add_prefix(prefix: str, body: BodyBuilder, marks: Marks, *, whole: bool) -> 
 
 
 def youngest_first(parts: list[Part], older: Sequence[Part]) -> list[Part]:
-    """Return the new parts in reverse order, followed by the older ones (gap-44, gap-45).
+    """Return the new parts in reverse order, followed by the older ones (tests gap-44, gap-45).
 
-    The order is kept if there are no older parts (gap-43), and for parts of a COLLADA file (gap-75).
+    The order is kept if there are no older parts (test gap-43), and for parts of a COLLADA file (test gap-75).
     """
     return [*reversed(_newer(parts, older)), *older] if older else parts
 

@@ -12,7 +12,10 @@ from ravemj.model.scene import AttachedSensor
 
 
 def named_link(body: BodyBuilder, element: Element, owner: str, context: Context) -> str:
-    """Return the name of a link. It should already exist, although the file may define it later (gap-29)."""
+    """Return the name of a link. It should already exist, although the file may define it later (test gap-29).
+
+    ``owner`` is the part that refers to the link, for the message.
+    """
     name = word(element, context.diagnostics)
     if body.find_link(name) is None:
         message = f"there is no Body '{name}' for the <{element.spelled}> of {owner}"
@@ -130,7 +133,10 @@ def read_attached_sensor(body: BodyBuilder, element: Element, context: Context) 
 
 
 def check_sensors(body: BodyBuilder, diagnostics: Diagnostics) -> None:
-    """Warn of sensors whose link is missing at the end of the robot, where OpenRAVE looks it up (gap-28, robot-21)."""
+    """Warn of sensors whose link is missing at the end of the robot.
+
+    OpenRAVE looks up the links then (tests gap-28, robot-21).
+    """
     for sensor, name in body.sensors:
         if name and body.find_link(name) is None:
             message = f"sensor '{sensor.name}' is attached to nothing: in the end there is no Body '{name}'"

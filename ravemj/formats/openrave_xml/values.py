@@ -71,7 +71,7 @@ def numbers(element: Element, count: int, diagnostics: Diagnostics, before: Sequ
     """Return exactly ``count`` numbers from an element's text.
 
     A word that is not a number is read as 0 and ends the reading (``bad-number``); missing numbers keep their values
-    (gap-14, gap-15), and excess numbers are ignored (``number-count``). OpenRAVE reports neither.
+    (tests gap-14, gap-15), and excess numbers are ignored (``number-count``). OpenRAVE reports neither.
 
     Args:
         element: The element.
@@ -112,12 +112,12 @@ def number_list(element: Element, diagnostics: Diagnostics) -> list[float]:
 
 
 def number(element: Element, diagnostics: Diagnostics, before: float = 0.0) -> float:
-    """Return the single number in an element's text."""
+    """Return the single number in an element's text; ``before`` if the text has none."""
     return numbers(element, 1, diagnostics, (before,))[0]
 
 
 def vector(element: Element, diagnostics: Diagnostics, before: Vec3 = ZERO) -> Vec3:
-    """Return the three numbers in an element's text."""
+    """Return the three numbers in an element's text; missing ones are those of ``before``."""
     x, y, z = numbers(element, 3, diagnostics, before)
     return (x, y, z)
 

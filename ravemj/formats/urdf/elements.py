@@ -36,7 +36,10 @@ def only(element: Element, tag: str, context: Context) -> Element | None:
 def check_children(
     element: Element, known: Iterable[str], context: Context, ignored: Iterable[str] = (), language: str = "URDF"
 ) -> None:
-    """Report child elements that are not part of URDF. Extensions with a namespace belong to other programs."""
+    """Report child elements that are neither in ``known`` nor in ``ignored``; ``language`` is for the message.
+
+    Extensions with a namespace are not reported, since they belong to other programs.
+    """
     known = set(known)
     for child in element.children:
         if child.spelled not in known and child.spelled not in ignored and ":" not in child.spelled:
@@ -114,7 +117,7 @@ def wxyz_from_rpy(rpy: Vec3) -> Wxyz:
 
 
 def named(elements: Sequence[Element], what: str) -> dict[str, Element]:
-    """Return elements by name.
+    """Return elements by name; ``what`` is the noun for them in messages.
 
     Raises:
         SourceError: two of them have the same name, or one has none.
@@ -130,7 +133,7 @@ def named(elements: Sequence[Element], what: str) -> dict[str, Element]:
 
 
 def known_name(name: str, known: Mapping[str, object], what: str, element: Element) -> str:
-    """Check that a name to which an element refers is known, and return it.
+    """Check that a name to which an element refers is in ``known``, and return it; ``what`` is the noun in messages.
 
     Raises:
         SourceError: nothing has this name.

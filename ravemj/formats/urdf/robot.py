@@ -32,7 +32,7 @@ def read_robot(root: Element, context: Context, given: Mapping[str, str]) -> Bod
     Args:
         root: The element ``<robot>``.
         context: The context of the reading.
-        given: Attributes passed by the caller; see ``ravemj.formats.urdf.GIVEN``.
+        given: Attributes passed by the caller, such as the SRDF; see ``ravemj.formats.urdf.GIVEN``.
 
     Raises:
         SourceError: the document is not a valid robot.

@@ -140,7 +140,10 @@ class _Srdf:
     # Groups
 
     def _group(self, name: str, opened: tuple[str, ...]) -> SrdfGroup:
-        """Return a group with its subgroups; a listed link includes its parent joint. ``opened`` are outer groups."""
+        """Return a group with its subgroups; a listed link includes its parent joint.
+
+        ``opened`` are the names of the groups that contain it.
+        """
         if name in self.groups:
             return self.groups[name]
         element = self.elements[name]

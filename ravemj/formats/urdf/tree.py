@@ -22,7 +22,7 @@ class RobotTree:
     def __init__(
         self, links: Mapping[str, Source], joints: Iterable[UrdfJoint], floating: Mapping[str, UrdfJoint]
     ) -> None:
-        """Arrange the links.
+        """Build the tree from links and joints; floating joints are not part of it.
 
         Raises:
             SourceError: two joints carry the same link, or joints form a loop.

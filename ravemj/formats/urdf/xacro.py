@@ -39,7 +39,7 @@ def expand(path: str, given: Mapping[str, str], access: FileAccess) -> bytes:
     Args:
         path: The file.
         given: Attributes passed by the caller: ``args`` and ``packages``, see ``ravemj.formats.urdf.GIVEN``.
-        access: The access of the reading.
+        access: The files that may be read; records those that were read.
 
     Raises:
         SourceError: it was dropped on a viewer, the extra ``xacro`` is missing, the expansion fails, or it takes too

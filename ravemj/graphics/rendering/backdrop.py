@@ -55,7 +55,7 @@ class Floor(NamedTuple):
         return distance + FADE_START * self.radius, distance + FADE_END * self.radius
 
     def is_below(self, camera: Camera) -> bool:
-        """Return whether a camera is above the floor."""
+        """Return whether the floor is below a camera."""
         return float(camera.position[2]) - self.height > _LIFTED * self.radius
 
 
@@ -106,7 +106,10 @@ def lowest_point(model: mujoco.MjModel, data: mujoco.MjData) -> float:
 
 
 def _reach_down(model: mujoco.MjModel, geoms: Ints, up: Floats) -> Floats:
-    """Return how far geoms extend below their origins in z [m], shape (N,); meshes by their bounding boxes."""
+    """Return how far geoms extend below their origins in z [m], shape (N,); meshes by their bounding boxes.
+
+    ``up`` is the world's z axis in the frame of each geom, shape (N, 3).
+    """
     kind, size = model.geom_type[geoms], model.geom_size[geoms]
     boxes = model.geom_aabb[geoms]
     aside = np.sqrt(np.maximum(1 - up[:, 2] ** 2, 0))

@@ -37,7 +37,7 @@ class Fragments(NamedTuple):
     color: Floats  # colour and opacity, (N, 4): 0..255 and 0..1
 
     def select(self, chosen: NDArray[np.bool_]) -> "Fragments":
-        """Return the fragments of a mask, shape (N,)."""
+        """Return the fragments that a mask selects, shape (N,)."""
         return Fragments(self.ray[chosen], self.depth[chosen], self.color[chosen])
 
     def between(self, start: int, stop: int) -> "Fragments":
@@ -121,7 +121,10 @@ class Raster:
             yield _flat(ray[hit], depth, batch.rgba[owner])
 
     def _pieces(self, start: Floats, along: Floats, half: Floats) -> tuple[Ints, Floats, Floats]:
-        """Cut the visible parts of screen lines into segments; return line index, start and end (0..1) of each."""
+        """Cut the visible parts of screen lines into segments; return line index, start and end (0..1) of each.
+
+        ``start`` and ``along`` are the lines' start points and vectors to their ends, ``half`` half their widths [px].
+        """
         with np.errstate(divide="ignore", invalid="ignore"):
             crossings = np.stack([-half[:, None] - start, self.size + half[:, None] - start]) / along
         first = np.nanmax(np.minimum(*crossings), axis=1, initial=0)

@@ -52,7 +52,7 @@ class GlRenderer(Renderer):
         primitives: Primitives = NOTHING,
         style: Style = AS_IT_IS,
     ) -> NDArray[np.uint8]:
-        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        """Render a picture; see :class:`ravemj.graphics.rendering.Renderer`."""
         chosen = Look.coerced(look)
         stage = self._filled_stage(data, camera, primitives, style, chosen)
         if stage.is_empty:
@@ -71,12 +71,12 @@ class GlRenderer(Renderer):
         return np.rint(255 * sky_colours(look, rays[..., 2] / np.linalg.norm(rays, axis=2))).astype(np.uint8)
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
-        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        """Render the geom ids at pixel centres; see :class:`ravemj.graphics.rendering.Renderer`."""
         stage = self._filled_stage(data, camera, NOTHING, AS_IT_IS, Look())
         return stage.geom_ids(self._codes(stage))
 
     def resize(self, width: int, height: int, samples: int) -> None:
-        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        """Set the size and the samples per pixel; see :class:`ravemj.graphics.rendering.Renderer`."""
         stage = self._gl_scene
         if stage is None:
             return
@@ -86,7 +86,7 @@ class GlRenderer(Renderer):
             mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, stage.context)
 
     def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
-        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        """Render the depths at pixel centres; see :class:`ravemj.graphics.rendering.Renderer`."""
         stage = self._filled_stage(data, camera, NOTHING, AS_IT_IS, Look())
         width, height = self._size
         buffer = np.empty((height, width), dtype=np.float32)

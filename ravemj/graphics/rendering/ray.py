@@ -72,7 +72,7 @@ class RayRenderer(Renderer):
         primitives: Primitives = NOTHING,
         style: Style = AS_IT_IS,
     ) -> NDArray[np.uint8]:
-        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        """Render a picture; see :class:`ravemj.graphics.rendering.Renderer`."""
         del style  # needs OpenGL
         width, height = self._size
         picture = np.empty((height, width, 3), dtype=np.uint8)
@@ -86,7 +86,7 @@ class RayRenderer(Renderer):
         return picture
 
     def segment(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.int32]:
-        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        """Render the geom ids at pixel centres; see :class:`ravemj.graphics.rendering.Renderer`."""
         width, height = self._size
         geom_ids = np.empty((height, width), dtype=np.int32)
         scene = self._scene(data, camera)
@@ -95,11 +95,11 @@ class RayRenderer(Renderer):
         return geom_ids
 
     def resize(self, width: int, height: int, samples: int) -> None:
-        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        """Set the size and the samples per pixel; see :class:`ravemj.graphics.rendering.Renderer`."""
         self._size, self._samples = (width, height), samples
 
     def depth(self, data: mujoco.MjData, camera: Camera) -> NDArray[np.float32]:
-        """See :class:`ravemj.graphics.rendering.Renderer`."""
+        """Render the depths at pixel centres; see :class:`ravemj.graphics.rendering.Renderer`."""
         width, height = self._size
         depths = np.empty((height, width), dtype=np.float32)
         scene = self._scene(data, camera)
@@ -169,7 +169,10 @@ class _RayScene:
     backdrop: Backdrop
 
     def colors(self, rays: Floats, drawn: Fragments, layers: int = _LAYERS) -> Floats:
-        """Return the unrounded colours in 0..255, shape (N, 3), seen along rays in the world, shape (N, 3)."""
+        """Return the unrounded colours in 0..255, shape (N, 3), seen along rays in the world, shape (N, 3).
+
+        ``drawn`` are the fragments of drawings on the rays; at most ``layers`` transparent surfaces are passed.
+        """
         colors = self.backdrop.colours(rays)
         geom_ids, depth, normals = self.cast(rays)
         hit = np.flatnonzero(geom_ids >= 0)

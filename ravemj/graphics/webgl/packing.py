@@ -67,7 +67,10 @@ class Package:
 
 
 def pack_scene(package: Package, model: mujoco.MjModel, shown: Surfaces) -> None:
-    """Add surfaces of a model: ``meshes``, ``shapes``, ``bodies``, and the unit sphere ``ball`` for drawings."""
+    """Add a model's surfaces to the document, with the keys ``meshes``, ``shapes`` and ``bodies``.
+
+    The key ``ball`` is a unit sphere, with which the page draws spheres.
+    """
     package.document["meshes"] = [_packed_mesh(package, mesh) for mesh in shown.meshes]
     package.document["ball"] = _packed_mesh(package, round_mesh(0.0))
     package.document["shapes"] = [
@@ -84,7 +87,7 @@ def pack_scene(package: Package, model: mujoco.MjModel, shown: Surfaces) -> None
 
 
 def pack_drawings(package: Package, drawings: Primitives) -> None:
-    """Add drawings as ``drawings``."""
+    """Add drawings to the document, with the key ``drawings``."""
     names = ("points", "spheres", "lines", "triangles")
     package.document["drawings"] = {
         name: _packed_batch(package, batch)

@@ -200,8 +200,7 @@ def _closure(node: Node, places: Mapping[Node, int]) -> Compiled:
 def _first_within(nodes: list[Node], lower: float, upper: float) -> Node:
     """Return a node for the first value of a multivalued equation that is within limits, else for its first value.
 
-    See ``within``. If a multivalued function occurs twice with the same arguments, both occurrences have the same
-    value.
+    If a multivalued function occurs twice with the same arguments, both occurrences have the same value.
     """
     several = [node for node in nodes if isinstance(node, Call) and FUNCTIONS[node.function].most_roots > 1]
     choices = list(product(*(range(FUNCTIONS[node.function].most_roots) for node in several)))

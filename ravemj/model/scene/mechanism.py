@@ -22,7 +22,7 @@ AXES: dict[JointKind, str] = {
     "pr": "RP",
     "pp": "PP",
 }
-"""Axes of each joint kind (R revolute, P prismatic), the axis nearer to the parent first; last in ``rp``, ``pr``."""
+"""Axes of each joint kind (R revolute, P prismatic), the axis nearer to the parent first, in ``rp`` and ``pr`` last."""
 
 OWN_SHAPES = "self"
 """Name of the group of a link's own shapes, stored while another group replaces them."""
@@ -40,8 +40,8 @@ class Inertial(Record):
         com: Centre of mass in the link frame [m].
         inertia: Inertia tensor about the centre of mass, in axes parallel to the link's [kg m^2].
         axes: Orientation of principal axes chosen by a script, in the link frame; None means any that fit the tensor.
-        undefined: Whether OpenRAVE's result is undefined (random-xml-132: a total mass over shapes without volume). API
-            getters then return NaN; computations use the finite values stored here.
+        undefined: Whether OpenRAVE's result is undefined (test random-xml-132: a total mass over shapes without
+            volume). API getters then return NaN; computations use the finite values stored here.
     """
 
     mass: float

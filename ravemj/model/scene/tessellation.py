@@ -49,7 +49,10 @@ def solid_mesh(kind: str, size: tuple[float, ...]) -> Mesh:
 
 @functools.cache
 def _cube() -> tuple[Floats, Ints]:
-    """Return corners and triangles of the cube [-1, 1]^3 in OpenRAVE's order (random api-91001-79, api-5000-95)."""
+    """Return corners and triangles of the cube [-1, 1]^3 in OpenRAVE's order.
+
+    The source of the order are the random conformance tests api-91001-79 and api-5000-95.
+    """
     corners = np.array([[x, y, z] for x in (1.0, -1.0) for y in (1.0, -1.0) for z in (1.0, -1.0)])
     triangles = "021 123 456 576 014 154 263 367 042 246 135 375"
     return corners, np.array([[int(corner) for corner in three] for three in triangles.split()])

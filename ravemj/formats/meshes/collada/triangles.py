@@ -83,7 +83,7 @@ def triangle_meshes(document: ColladaDocument, geometry: Element, metres: float)
 
 
 def unread_primitives(geometry: Element) -> list[Element]:
-    """Return the primitive elements of a ``<geometry>`` that OpenRAVE's robots ignore."""
+    """Return the primitive elements of a ``<geometry>`` that OpenRAVE ignores in robots."""
     known = {*_OF_ROBOTS, *_NO_PRIMITIVES}
     return [element for element in children(_mesh(geometry)) if local_name(element) not in known]
 
