@@ -163,7 +163,7 @@ class Descent:
         return DescentResult(steps, _cost(self._measured()), stopped)
 
     def _settle(self, state: _State, longest: float) -> None:
-        """Correct errors of all priorities but the lowest that linearized steps left behind.
+        """Correct the errors that linearization left in all priorities but the lowest.
 
         Strong damping suppresses motions for the lowest priority.
         """
