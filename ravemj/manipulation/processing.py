@@ -118,7 +118,7 @@ class Processor:
     proceed: Callable[[int], bool] = lambda attempt: True
 
     def process(self, path: Waypoints, find_body: FindBody) -> tuple[Waypoints, Certificate | None]:
-        """Return the timed path, and its certificate if smoothers certify and it has no undecided span.
+        """Return the timed path, and its certificate; None without certification, or if spans remain undecided.
 
         ``find_body`` finds the bodies, whose present state supplies missing joints.
 

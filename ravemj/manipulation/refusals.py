@@ -75,7 +75,10 @@ class Tally:
         return sum(self.counts, Counter[Cause | None]())
 
     def error(self, name: str) -> "RefusedError":
-        """Return the error for a region set without any accepted sample, with an example of the most frequent cause."""
+        """Return the error for regions without any accepted sample, with an example of the most frequent cause.
+
+        ``name`` is the name of the set of regions in the text.
+        """
         most = max(self.examples, key=lambda cause: self.total()[cause])
         example = self.examples[most]
         error = RefusedError(name, self.described(), most, values=example.values, findings=example.findings)
