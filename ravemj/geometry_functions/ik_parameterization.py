@@ -45,7 +45,7 @@ def goal_transform(value: ArrayLike, name: str) -> Floats:
     As in OpenRAVE, a scaled rotation matrix gives another rotation than the same matrix without the scale.
 
     Raises:
-        ValueError: it has another shape.
+        ValueError: ``value`` is neither a 4x4 or 3x4 matrix nor 7 numbers.
         ArgumentError: a number is not finite, or the rotation matrix is not orthonormal up to a scale.
     """
     matrix = checked_transform(value, name)
