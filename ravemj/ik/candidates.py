@@ -86,7 +86,7 @@ def branch_names(solver: ArmSolutions, count: int) -> list[str]:
 def everything(
     solver: ArmSolutions, goal: Floats, *, free: Floats | None = None, limits: bool = True, fine: bool = True
 ) -> Iterator[Floats]:
-    """Yield batches of solutions (K, n): first all of ``solve_one``, then more for callers that reject these.
+    """Yield batches of solutions (K, n): first all of ``solve_one``, then others, for callers that reject those.
 
     The arguments are those of ``nearest_first``.
     """
