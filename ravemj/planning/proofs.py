@@ -83,7 +83,7 @@ class Spaces(Protocol):
 
 
 class Span(NamedTuple):
-    """Time span in which a pair of shapes is undecided or exempt.
+    """Time span in which a pair of shapes is not proven free of collisions, or is exempt from the proof.
 
     Attributes:
         start: Start time [s].
