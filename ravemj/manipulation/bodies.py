@@ -346,7 +346,7 @@ class Conditions:
         return lambda values: not fast(values)
 
     def near_others(self, space: Space, ends: Floats) -> Space:
-        """Return the space in which to search for a path between starts and goals; see ``Bodies.near_others``."""
+        """Return the part of a space to search for a path: ``Bodies.near_others``, or all of it with user callbacks."""
         return space if self.bodies is None or self.constraints else self.bodies.near_others(space, ends)
 
     def edges(self, space: Space, allowed: Allowed, step: float, ends: Sequence[Floats]) -> Edges:

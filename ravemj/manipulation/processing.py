@@ -69,7 +69,7 @@ def profile_of(name: str, options: Mapping[str, str]) -> Profile | ToppRa | Spli
     """Return the velocity profile of a retimer.
 
     Raises:
-        RetimingError: the options ask for another interpolation.
+        RetimingError: the option ``interpolation`` is not the retimer's.
     """
     profile, wanted = RETIMERS[name.lower()](options), options.get("interpolation", "")
     if wanted not in {"", profile.interpolation}:

@@ -211,8 +211,8 @@ def allowed_ends(
     """Return the allowed configurations among starts or goals. Use it within ``conditions.kept``.
 
     Raises:
-        RefusedError: none is allowed, there is none although one is needed, or a value has no limits. The text calls
-            them ``name``.
+        RefusedError: no configuration is allowed; ``ends`` is empty although ``needed``; or a coordinate of the space
+            has no limits. The text calls the configurations ``name``.
     """
     endless = np.flatnonzero(~np.isfinite(space.lower) | ~np.isfinite(space.upper))
     if len(endless):

@@ -36,7 +36,7 @@ _PARALLEL = 1e-9
 """Cosine of the angle between a stop plane's normal and the approach below which the hand never reaches the plane."""
 
 _IS_PLANE = 0.5
-"""Squared norm of the four numbers of a stop plane above which it is used; OpenRAVE's."""
+"""Squared norm of the four numbers of a stop plane up to which they mean that there is none; OpenRAVE's."""
 
 
 class Touches(Protocol):
