@@ -18,7 +18,7 @@ _LOCK = 1e-7
 """Cosine of the pitch below which roll and yaw rotate about one axis."""
 
 _LENGTH, _PART, _ANGLE = 1e-9, 1e-6, 1e-6
-"""Tolerances of a membership test: length [m], length relative to the coordinates of the poses, and angle [rad]."""
+"""Tolerances of a membership test: length [m], additional fraction of the poses' translations, and angle [rad]."""
 
 _POINT_SHARE = 0.1
 """Minimum weight of a region in a union, relative to the mean width, so that point regions are sampled, too."""
