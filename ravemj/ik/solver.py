@@ -214,7 +214,7 @@ class ArmSolutions:
         return np.vstack([rows, *extra]) if extra else rows
 
     def nearest(self, goal: ArrayLike, seed: Floats, *, weights: Floats | None = None) -> Floats | None:
-        """Return the solution within the limits nearest to a configuration.
+        """Return the solution within the limits nearest to the configuration ``seed``.
 
         Free joints take precedence: the search ends at the nearest free joint values with a solution. In singular
         configurations, a closed form returns some of infinitely many solutions; there a descent from the configuration

@@ -35,7 +35,7 @@ class OnePose:
 
     @classmethod
     def for_family(cls, family: Family) -> "OnePose | None":
-        """Return a solver for a family; None if its equations differ."""
+        """Return a solver for a family; None if it is not of the kind that the module describes, or needs a quartic."""
         if not isinstance(family, BlockFamily) or not isinstance(family.inside, Wrist) or family.arm.locked:
             return None
         turning = not any(screw.prismatic for screw in family.arm.screws)
