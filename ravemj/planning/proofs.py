@@ -45,7 +45,7 @@ class PairTests(Protocol):
 
     @property
     def travel(self) -> Floats:
-        """Maximum relative travel [m]."""
+        """Maximum travel of the shapes relative to each other, from the middle of the box to its boundary [m]."""
         ...
 
     @property
