@@ -30,7 +30,7 @@ def install_finder() -> None:
 
 
 def package_folder() -> Path:
-    """Return the folder of ``install_package``: that of the packages of this Python environment."""
+    """Return the folder of the package ``openravepy`` that ``install_package`` creates."""
     return Path(sysconfig.get_path("purelib")) / NAME
 
 

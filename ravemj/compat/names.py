@@ -1,7 +1,7 @@
 """Modules that are imported under other names than those of their files.
 
-``ravemj.misc`` is ``ravemj.compat.misc``, always; ``openravepy`` is ``ravemj.compat.openravepy`` where a script asked
-for it (see ``ravemj.compat.alias``). All names of a module refer to one module object.
+``ravemj.misc`` always is ``ravemj.compat.misc``; ``openravepy`` is ``ravemj.compat.openravepy`` if
+``ravemj.compat.alias`` has installed the alias. All names of a module refer to one module object.
 """
 
 import importlib

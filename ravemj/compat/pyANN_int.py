@@ -23,8 +23,8 @@ class KDTree(ApiObject):
     """Set of points with nearest-neighbour searches.
 
     Args:
-        n: The points, shape (n, d); or ANN's number of points, for an empty tree.
-        dd: The dimension of an empty tree.
+        n: The points, shape (n, d); or, as in ANN, a number of points, which are then all at the origin.
+        dd: The dimension, if ``n`` is a number.
         bs: Not used.
     """
 
@@ -76,7 +76,7 @@ class KDTree(ApiObject):
         """Return the k nearest points within a squared radius, and the number of points within it.
 
         Returns:
-            Indices and squared distances as of ``kSearch``; padded with -1 and infinity.
+            Indices and squared distances as of ``kSearch``, padded with -1 and infinity; and the number.
         """
         indices, distances, counts = self.kFRSearchArray(np.asarray(q)[None], sqrad, k, eps)
         return indices[0], distances[0], int(counts[0])

@@ -1,7 +1,7 @@
 """Checks of the arguments of the geometry functions.
 
 As in OpenRAVE, too short vectors are errors, and longer ones are truncated. A wrong shape is a ``ValueError``, as in
-OpenRAVE's bindings (conformance cases gap-03 and random-api-6).
+OpenRAVE's bindings.
 """
 
 import numpy as np
@@ -40,7 +40,8 @@ def unit_wxyz(values: ArrayLike, name: str) -> Wxyz:
     """Return a quaternion of nearly unit length, normalized.
 
     Raises:
-        ArgumentError: its squared length is not between 0.99 and 1.01 (code Assert), or it has too few numbers.
+        ValueError: it has fewer than four numbers.
+        ArgumentError: its squared length is not between 0.99 and 1.01 (error code ``Assert``).
     """
     quaternion = wxyz(values, name)
     if not 0.99 < sum(part * part for part in quaternion) < 1.01:

@@ -45,7 +45,7 @@ def goal_transform(value: ArrayLike, name: str) -> Floats:
     As in OpenRAVE, a scaled rotation matrix gives another rotation than the same matrix without the scale.
 
     Raises:
-        ValueError: it has another shape.
+        ValueError: ``value`` is neither a 4x4 or 3x4 matrix nor 7 numbers.
         ArgumentError: a number is not finite, or the rotation matrix is not orthonormal up to a scale.
     """
     matrix = checked_transform(value, name)
@@ -85,7 +85,7 @@ def checked_goal(kind: IkParameterizationType, value: Any) -> Floats:  # noqa: A
 
 
 def length_scales(kind: IkParameterizationType, factor: float) -> Floats:
-    """Return the factors of a goal's values for another unit of length: ``factor`` for lengths, else 1."""
+    """Return the factor of each value of a goal for a change of the unit of length: ``factor`` for lengths, else 1."""
     scales = np.full(goal_size(kind), factor)
     if kind == _Type.TranslationXYOrientation3D:
         scales[2:] = 1
@@ -185,7 +185,9 @@ _FOLLOW = "_transform="
 
 
 def moved_custom_values(name: str, values: Floats, pose: Pose) -> Floats:
-    """Return custom values of a goal after a transform by a pose; a word in their name determines their type.
+    """Return custom values of a goal after a transform by a pose.
+
+    The word after ``_transform=`` in their name determines their type; without it, they are unchanged.
 
     Raises:
         ArgumentError: the word after ``_transform=`` is not ``point``, ``direction``, ``quat`` or ``ikparam``

@@ -18,7 +18,7 @@ _LOCK = 1e-7
 """Cosine of the pitch below which roll and yaw rotate about one axis."""
 
 _LENGTH, _PART, _ANGLE = 1e-9, 1e-6, 1e-6
-"""Tolerances of a membership test: length [m], length relative to the coordinates of the poses, and angle [rad]."""
+"""Tolerances of a membership test: length [m], additional fraction of the poses' translations, and angle [rad]."""
 
 _POINT_SHARE = 0.1
 """Minimum weight of a region in a union, relative to the mean width, so that point regions are sampled, too."""
@@ -28,7 +28,7 @@ _POINT_SHARE = 0.1
 class PoseSet:
     """The poses ``T0_w @ D @ Tw_e`` with ``D = translate(x, y, z) Rz(yaw) Ry(pitch) Rx(roll)`` within bounds.
 
-    With a lean, ``D = translate(x, y, z) S Rz(yaw)``: S is a rotation about a horizontal axis of *w*, by the angle
+    With ``lean``, ``D = translate(x, y, z) S Rz(yaw)``: S is a rotation about a horizontal axis of *w*, by the angle
     between the z axes of ``D`` and *w*. The coordinates roll and pitch are then x and y of the rotation vector of S.
 
     Attributes:
@@ -59,7 +59,7 @@ class PoseSet:
         return replace(self, T0_w=T_world_0 @ self.T0_w)
 
     def relative(self, T0_s: Floats) -> Floats:
-        """Return ``D`` of a pose, shape (4, 4)."""
+        """Return ``D`` of a tool pose ``T0_s``, relative to frame 0 like ``T0_w``, shape (4, 4)."""
         return self._Tw_0 @ T0_s @ self._Te_w
 
     def coordinates(self, T0_s: Floats) -> Floats:
@@ -88,7 +88,7 @@ class PoseSet:
     def width(self) -> float:
         """Return the sum of the widths of the six intervals [m and rad].
 
-        With a lean, the widths of roll and pitch are ``2 * lean`` each.
+        With ``lean``, the widths of roll and pitch are ``2 * lean`` each.
         """
         widths = [upper - lower for lower, upper in self._bounds]
         return sum(widths) if self.lean is None else sum(widths[:3]) + 4 * self.lean + widths[5]

@@ -48,8 +48,8 @@ def chain_of(body: KinBody, manipulator: Manipulator) -> Chain:
     the arm.
 
     Raises:
-        ValueError: the base, the end effector or joints between them are missing, or such a joint is spherical; the
-            message names it.
+        ValueError: the manipulator has no base or end effector, or no joints between them, or one of the joints is
+            spherical; the message says which.
     """
     name = f"manipulator '{manipulator.name}' of '{body.name}'"
     if manipulator.base is None or manipulator.effector is None:

@@ -36,9 +36,9 @@ def nearest_first(
     Args:
         solver: The solver.
         goal: A pose (4, 4), or another goal of the task.
-        seed: The configuration, shape (n,).
+        seed: The configuration from which distances are measured, shape (n,).
         weights: Weight of each joint in distances, shape (n,); by default equal.
-        free: Values of the free joints, shape (k,); by default samples, from the configuration outwards.
+        free: Values of the free joints, shape (k,); by default samples, from those of ``seed`` outwards.
         limits: Whether to enforce limits; otherwise each branch is yielded once, with angles in [-pi, pi].
         fine: Whether to try many values between the samples; see ``beyond_samples``.
     """
@@ -56,7 +56,7 @@ def ranked(solver: ArmSolutions, goal: Floats, start: Floats) -> list[tuple[Floa
     Args:
         solver: The solver.
         goal: A pose (4, 4), or another goal of the task.
-        start: The configuration, shape (n,).
+        start: The configuration from which distances are measured, shape (n,).
     """
     solutions = solver.solve(goal[None], limits=False)
     valid, chain = solutions.valid[0], solver.chain
@@ -86,7 +86,7 @@ def branch_names(solver: ArmSolutions, count: int) -> list[str]:
 def everything(
     solver: ArmSolutions, goal: Floats, *, free: Floats | None = None, limits: bool = True, fine: bool = True
 ) -> Iterator[Floats]:
-    """Yield batches of solutions (K, n): first all of ``solve_one``, then more for callers that reject these.
+    """Yield batches of solutions (K, n): first all of ``solve_one``, then others, for callers that reject those.
 
     The arguments are those of ``nearest_first``.
     """
@@ -154,7 +154,8 @@ def beyond_samples(
         pose: A pose (4, 4).
         samples: The samples, shape (K, k).
         solutions: The results of ``solver.at`` for the samples.
-        seed: The configuration at which singular solutions are spread, shape (n,); see ``spread``.
+        seed: Configuration whose joint values are also tried for singular solutions, shape (n,); see
+            ``ArmSolutions.spread``.
         limits: Whether to enforce joint limits.
         fine: Whether to continue after the ends, the middle and eight values of each interval.
     """

@@ -33,9 +33,9 @@ _MOST_GROWTH = 2.0
 A larger growth means that the pose is just out of reach, where the closed form returns an inexact double solution.
 """
 _SETTLED, _SLOWEST = 3, 0.5
-"""Number of Newton steps before convergence is checked, and the maximum error ratio of a later step.
+"""Number of Newton steps before convergence is checked; maximum ratio of the errors after and before a later step.
 
-At double roots, Newton's method reaches a ratio of 0.25.
+At double solutions, this ratio is 0.25.
 """
 
 
@@ -233,7 +233,7 @@ class ClosedForm:
         return self._error(tool, poses[:, :3].transpose(2, 1, 0))
 
     def _refine(self, doubtful: Bools, goal: Floats, values: Floats, valid: Bools) -> bool:
-        """Refine doubtful solutions with Newton's method, and mark those that reach their goal as valid.
+        """Refine the solutions marked in ``doubtful`` by Newton's method; set ``valid`` if they reach their goals.
 
         Returns:
             Whether any of them reaches its goal.

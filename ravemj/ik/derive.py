@@ -112,7 +112,10 @@ def _prove(solver: ClosedForm) -> Validation | None:
 
 
 def _regular(chain: Chain, task: Task, free: Sequence[int]) -> bool:
-    """Return whether the free joints can move the tool independently, so that the number of solutions is finite."""
+    """Return whether the joints ``free``, which are not locked, move the tool independently.
+
+    Then the number of solutions is finite.
+    """
     values = random_values(chain, 4, np.random.default_rng(4))
     _, jacobians = chain.forward_and_jacobian(values)
     scale = np.array([1 / chain.reach] * 3 + [1.0] * 3)
@@ -122,7 +125,10 @@ def _regular(chain: Chain, task: Task, free: Sequence[int]) -> bool:
 
 
 def _is_planar(chain: Chain, free: Sequence[int]) -> bool:
-    """Return whether the free joints keep the tool in an xy plane; locked prismatic joints may lift it."""
+    """Return whether the joints ``free``, which are not locked, keep the tool in an xy plane.
+
+    Locked prismatic joints may move this plane along z.
+    """
     upright = np.abs(chain.axes[:, 2])
     lifted = np.isin(np.arange(chain.dof), free, invert=True)
     return bool(np.where(chain.prismatic, (upright < 1e-9) | lifted, upright > 1 - 1e-12).all())

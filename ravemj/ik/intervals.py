@@ -2,8 +2,8 @@
 
 A redundant arm reaches a pose for intervals of its free joint's values. Samples miss intervals narrower than their
 step. Near such an interval, the *excess* of a branch, its pose error plus the violation of limits, is small; so numeric
-descents from the samples with the least excess find the interval. Its ends are found by section, as far as the closed
-form distinguishes branches.
+descents from the samples with the least excess find the interval. Its ends are found by repeated subdivision, as far as
+the closed form distinguishes branches.
 """
 
 from collections.abc import Iterator
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ravemj.ik.solver import ArmSolutions
 
 _STEEP = 1.0
-"""Maximum excess of a minimum that is searched, as a multiple of the rise to the higher neighbouring sample.
+"""Maximum ratio of the excess at a minimum to the rise to its higher neighbour, for minima that are searched around.
 
 The function ``excess`` defines the excess.
 """
@@ -35,9 +35,9 @@ _MOST_VALLEYS, _FIRST_VALLEYS = 6, 2
 _MOST_DESCENTS, _LAST_DESCENTS = 12, 4
 """Maximum number of descents from minima of the excess and, if all fail, from other samples with the least excess."""
 _FRACTIONS = np.linspace(0, 1, 12)
-"""Values of the free joint tried around a minimum of ``excess``, as fractions of the way between the neighbours."""
+"""Values of the free joint tried around a minimum of ``excess``, as fractions of the range between its neighbours."""
 _PARTS, _SECTIONS = 8, 5
-"""Subdivisions per section, and number of sections: an end of an interval is found to 1 / 9⁵ of a step."""
+"""Values tested per subdivision, and number of subdivisions: an end of an interval is found to 1 / 9⁵ of a step."""
 
 
 class FreeInterval(NamedTuple):
@@ -63,7 +63,7 @@ def excess(chain: Chain, solutions: Solutions, *, limits: bool = True) -> Floats
 
 
 def closest(chain: Chain, solutions: Solutions, most: int) -> list[Floats]:
-    """Return the joint values of the branches with the least excess, each of shape (n,)."""
+    """Return joint values of the ``most`` branches with the least excess, clamped to the limits, shape (n,) each."""
     missed = excess(chain, solutions)
     places = _distinct(missed, np.argwhere(np.isfinite(missed)), most)
     return [clamped(chain, solutions.values[sample, branch]) for sample, branch in places.tolist()]

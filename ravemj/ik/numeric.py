@@ -127,7 +127,8 @@ class NumericSolver:
     def solve(self, pose: Floats, seed: Floats | None = None, *, starts: int | None = None) -> Floats | None:
         """Return one solution within the limits, shape (n,), or None if no start finds any.
 
-        The first start is the seed, if given; ``starts`` defaults to the solver's number.
+        The first start is the seed, if given; ``starts`` is the maximum number of starts, by default the attribute of
+        that name.
         """
         for number in range(self.starts if starts is None else starts):
             start = seed if seed is not None and number == 0 else self.start(number)

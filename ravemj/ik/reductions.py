@@ -63,8 +63,9 @@ def _centred(chain: Chain, task: Task) -> Reduction:
 def _with_joints(chain: Chain, sliding: list[bool], task: Task, how: str) -> Reduction:
     """Reduce a task by adding virtual joints along or about the tool's direction; ``how`` describes the reduction.
 
-    They are inserted before final revolute joints about the same line, with which they commute. So they remain next to
-    the arm's other joints if such a revolute joint is locked.
+    If the last revolute joints of the arm rotate about the same line, the virtual joints are inserted before them,
+    since their motions commute. So a virtual joint follows the arm's other joints directly even if these last ones are
+    locked.
     """
     axis, place = chain.T_base_tool[:3, :3] @ chain.direction, chain.T_base_tool[:3, 3]
     at = chain.dof

@@ -157,8 +157,8 @@ def spread(chain: Chain, singular: tuple[Floats, int, int, float], seed: Floats 
 def default_free(chain: Chain, name: str, dof: int) -> list[int]:
     """Return the default free joints of an arm with more joints than the ``dof`` values that a goal type constrains.
 
-    They are counted from the tip. For goals with position and direction, the last joint is free if it rotates about the
-    direction; otherwise joints at the base are free.
+    By default, the joints nearest to the tool are free. For goals with position and direction, the last joint is free
+    if it rotates about the tool's direction; further free joints are those nearest to the base.
     """
     surplus = max(0, chain.dof - dof)
     joints = list(range(chain.dof))

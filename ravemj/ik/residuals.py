@@ -88,8 +88,8 @@ def _look_at(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[F
 def _planar(chain: Chain, task: Task, goal: Floats, tool: ToolState) -> tuple[Floats, Floats]:
     """Return error and Jacobian of a planar task: x, y and the angle in the plane.
 
-    As in OpenRAVE, the angle is that of the arm's direction in the plane, or of the tool if the direction is
-    perpendicular to the plane.
+    As in OpenRAVE, the angle is that of the tool's direction in the plane or, if this is perpendicular to the plane at
+    the goal, that of the tool's rotation about z.
     """
     pointing, wanted = tool.rotation @ chain.direction, goal[:3, :3] @ chain.direction
     moves, turns = np.split(tool.jacobian, 2)

@@ -26,7 +26,8 @@ def null_space(chain: Chain, values: Floats, task: Task = Task.TRANSFORM, goal: 
         chain: The arm.
         values: The configuration, shape (n,).
         task: The constrained components of the tool pose.
-        goal: The goal that the configuration reaches, for tasks with several such goals, like ``LOOK_AT``.
+        goal: The goal that the configuration reaches; needed if it reaches several goals of the task, as with
+            ``LOOK_AT``.
     """
     pose = None if goal is None else goal_poses(chain, task, goal)
     jacobian = redundancy.task_jacobians(chain, task, values[None], pose)[0]

@@ -195,7 +195,7 @@ class ArmSolutions:
             pose: The pose (4, 4).
             samples: The samples, shape (K, k).
             solutions: The result of ``at`` for the samples.
-            seed: The configuration at which singular solutions are spread, shape (n,); see ``spread``.
+            seed: Configuration whose joint values are also tried for singular solutions, shape (n,); see ``spread``.
             limits: Whether to enforce limits; equivalents by whole turns are left to the caller.
         """
         for row, here in between_samples(self, pose, samples, solutions):
@@ -214,7 +214,7 @@ class ArmSolutions:
         return np.vstack([rows, *extra]) if extra else rows
 
     def nearest(self, goal: ArrayLike, seed: Floats, *, weights: Floats | None = None) -> Floats | None:
-        """Return the solution within the limits nearest to a configuration.
+        """Return the solution within the limits nearest to the configuration ``seed``.
 
         Free joints take precedence: the search ends at the nearest free joint values with a solution. In singular
         configurations, a closed form returns some of infinitely many solutions; there a descent from the configuration
@@ -290,10 +290,9 @@ class ArmSolutions:
     def _best(
         self, solutions: Solutions, index: int, seed: Floats, weights: Floats | None, more: Floats | None = None
     ) -> Floats | None:
-        """Return the solution of pose ``index``, or row of ``more``, that is within the limits and nearest to ``seed``.
+        """Return the solution of pose ``index`` nearest to ``seed`` within the limits, or None.
 
-        Returns:
-            None if no solution is within the limits.
+        ``more`` are further candidates, shape (K, n).
         """
         rows = solutions.of(index)
         rows = self.spread(rows, seed) if solutions.merged[index] else rows

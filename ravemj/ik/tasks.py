@@ -71,7 +71,7 @@ class Task(Enum):
 ANGLES = {Task.PLACE_X_ANGLE: 0, Task.PLACE_Y_ANGLE: 1, Task.PLACE_Z_ANGLE: 2}
 """Axis, x, y or z, of each task that constrains the angle between the tool's direction and an axis."""
 HEADINGS = {Task.PLACE_XY_HEADING: 0, Task.PLACE_YZ_HEADING: 1, Task.PLACE_ZX_HEADING: 2}
-"""Axis from which each task with a direction in a plane counts its angle."""
+"""Axis from which the angle is measured, for each task that constrains a direction in a plane."""
 ALONG = frozenset({Task.PLACE_DIRECTION, *HEADINGS})
 """Tasks that constrain the position and the direction of the tool."""
 _DOF = {
@@ -96,7 +96,7 @@ _SIZE = {
 def goal_poses(chain: Chain, task: Task, goals: ArrayLike) -> Floats:
     """Return goals as tool poses in the base, shape (..., 4, 4), with arbitrary unconstrained components.
 
-    Rotations with errors up to 1e-3 are replaced by the nearest rotations. The last row of a ``LOCAL_PLACE`` goal
+    Rotations with errors up to 1e-3 are replaced by the nearest rotations. For ``LOCAL_PLACE``, the last row of a pose
     contains the point of the tool.
 
     Args:

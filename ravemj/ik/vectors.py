@@ -166,7 +166,10 @@ class Screw:
         return self.turned_back(value, points - self.point) + self.point
 
     def carried(self, transform: Transform) -> "Screw":
-        """Return the joint transformed by W: W E(axis) = E(W axis) W."""
+        """Return the joint with axis and point moved by ``transform``.
+
+        With the transform W, the motion E of this joint and E' of the moved one at the same value: W E = E' W.
+        """
         return Screw(transform.turned(self.axis), transform.moved(self.point), self.prismatic)
 
     def transform(self, value: Floats) -> Transform:

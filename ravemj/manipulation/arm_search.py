@@ -39,8 +39,8 @@ class Checks(NamedTuple):
     Attributes:
         others: Whether to check collisions with other bodies.
         itself: Whether to check self-collisions.
-        limits: Whether to enforce joint limits. Without them, every branch gives one solution, with angles in [-pi,
-            pi].
+        limits: Whether to enforce joint limits. Without them, angles are in [-pi, pi], and solutions that differ by
+            whole turns count as one.
         end_and_others: Whether to check the links beyond the arm (end effector, gripper) against other bodies, too.
         end_and_rest: Whether to check the links beyond the arm against links not moved by the arm.
     """

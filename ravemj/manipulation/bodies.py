@@ -75,8 +75,8 @@ class Bodies:
 
     Args:
         simulation: The world that contains the bodies.
-        groups: Groups of joint values, of poses, and of goals of inverse kinematics. Goals and poses of ``__dummy__``
-            do not move a body.
+        groups: Groups of joint values, of poses, and of goals of inverse kinematics. Goals do not move a body, nor do
+            poses of ``__dummy__``, OpenRAVE's name for no body.
         checker: Returns the collision checker.
 
     Attributes:
@@ -99,7 +99,7 @@ class Bodies:
         self._free: set[BodyState] = set()  # bodies whose joints do not move, and which need no self-collision checks
 
     def numbers(self, name: str) -> Floats:
-        """Return a field of ``scene.Axis`` for each joint value, shape (n,); for poses and goals, 0 or no limit."""
+        """Return the field ``name`` of each joint's ``scene.Axis``, shape (n,); for poses and goals, 0 or no limit."""
         result = np.zeros(self.dof)
         for part in self.parts:
             axes = part.body.scene.dof_axes
@@ -346,7 +346,7 @@ class Conditions:
         return lambda values: not fast(values)
 
     def near_others(self, space: Space, ends: Floats) -> Space:
-        """Return the space in which to search for a path between starts and goals; see ``Bodies.near_others``."""
+        """Return the part of a space to search for a path: ``Bodies.near_others``, or all of it with user callbacks."""
         return space if self.bodies is None or self.constraints else self.bodies.near_others(space, ends)
 
     def edges(self, space: Space, allowed: Allowed, step: float, ends: Sequence[Floats]) -> Edges:
@@ -367,7 +367,8 @@ class Conditions:
     def straight_edges(self, space: Space, ends: Sequence[Floats], *, certifies: bool) -> Edges:
         """Return the tests of straight edges, ignoring a constraint manifold; see ``edges``.
 
-        If the motion should be certified (``certifies``), shortcuts keep a clearance, which makes that likely.
+        If ``certifies``, the motion is certified later: shortcuts keep a clearance, so that the proof is likely to
+        succeed.
         """
         fast = self.bodies.fast_test() if certifies and self.bodies is not None and not self.constraints else None
         make_certifier = cache(lambda: self.certifier(ends))  # on first use, since it takes as long as many tests

@@ -99,7 +99,7 @@ class BodySpaces:
     Attributes:
         pairs: Both geoms of each pair of shapes, shape (pair_count, 2).
         pair_count: The number of pairs.
-        counted: Whether each pair contributes to the smallest gap, since it is of two bodies.
+        counted: Whether the shapes of each pair belong to two bodies; only such pairs contribute to the smallest gap.
     """
 
     most = Clearances.most
@@ -168,7 +168,7 @@ def _check_grabs(moving: Sequence[BodyState]) -> None:
 
 
 def _pairs(world: CollisionWorld, bodies: Bodies, body: BodyState) -> Ints:
-    """Return the collision pairs of a body with others and itself, the smaller geom first, shape (n, 2)."""
+    """Return the collision pairs of a body with others and itself, the smaller geom index first, shape (n, 2)."""
     moved = bodies.moved(body)
     asked = body_and_others(world, body, moved), itself(world, body, moved)
     return np.sort(np.concatenate([np.stack([pairs.first, pairs.second], axis=1) for pairs in asked]), axis=1)

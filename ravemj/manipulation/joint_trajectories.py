@@ -199,7 +199,7 @@ def _without_stops(rows: Floats, limits: segments.PathLimits) -> segments.Timed 
 def sampled(
     joints: Joints, waypoints: Waypoints, group: Group, rate: float | None, find_body: FindBody
 ) -> JointTrajectory:
-    """Return the points of a trajectory, with its own derivatives.
+    """Return the points of a trajectory, with the derivatives of its interpolating polynomials.
 
     Args:
         joints: The moving joints.

@@ -104,7 +104,7 @@ def free_configuration(
 def place_for_others(
     conditions: Conditions, space: Space, here: Floats, others: Bodies, target: Floats, divisions: int, seed: int
 ) -> Floats | None:
-    """Return a configuration from which other joints can move to their target: ``here``, a random one, or None.
+    """Return a configuration from which other joints can move to their target: ``here``, else a random one, else None.
 
     Args:
         conditions: The conditions of the configuration.

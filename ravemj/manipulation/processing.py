@@ -69,7 +69,7 @@ def profile_of(name: str, options: Mapping[str, str]) -> Profile | ToppRa | Spli
     """Return the velocity profile of a retimer.
 
     Raises:
-        RetimingError: the options ask for another interpolation.
+        RetimingError: the option ``interpolation`` is not the retimer's.
     """
     profile, wanted = RETIMERS[name.lower()](options), options.get("interpolation", "")
     if wanted not in {"", profile.interpolation}:
@@ -118,7 +118,7 @@ class Processor:
     proceed: Callable[[int], bool] = lambda attempt: True
 
     def process(self, path: Waypoints, find_body: FindBody) -> tuple[Waypoints, Certificate | None]:
-        """Return the timed path, and its certificate if smoothers certify and it has no undecided span.
+        """Return the timed path, and its certificate; None without certification, or if spans remain undecided.
 
         ``find_body`` finds the bodies, whose present state supplies missing joints.
 

@@ -75,7 +75,10 @@ class Tally:
         return sum(self.counts, Counter[Cause | None]())
 
     def error(self, name: str) -> "RefusedError":
-        """Return the error for a region set without any accepted sample, with an example of the most frequent cause."""
+        """Return the error for regions without any accepted sample, with an example of the most frequent cause.
+
+        ``name`` is the name of the set of regions in the text.
+        """
         most = max(self.examples, key=lambda cause: self.total()[cause])
         example = self.examples[most]
         error = RefusedError(name, self.described(), most, values=example.values, findings=example.findings)
@@ -208,8 +211,8 @@ def allowed_ends(
     """Return the allowed configurations among starts or goals. Use it within ``conditions.kept``.
 
     Raises:
-        RefusedError: none is allowed, there is none although one is needed, or a value has no limits. The text calls
-            them ``name``.
+        RefusedError: no configuration is allowed; ``ends`` is empty although ``needed``; or a coordinate of the space
+            has no limits. The text calls the configurations ``name``.
     """
     endless = np.flatnonzero(~np.isfinite(space.lower) | ~np.isfinite(space.upper))
     if len(endless):

@@ -44,7 +44,9 @@ class MovingFrame(NamedTuple):
 
     @classmethod
     def on_link(cls, bodies: Bodies, body: BodyState, link: int, T_link_frame: Floats) -> "MovingFrame | None":
-        """Return a frame of a moving link, possibly moved by the body that grabs it; None if it does not move.
+        """Return a frame fixed to a link that a planner moves; None if the link does not move.
+
+        If a moving body grabs the body of the link, the frame is fixed to the grabbing link.
 
         Raises:
             ArgumentError: the base of the body moves, too.

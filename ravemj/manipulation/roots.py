@@ -88,7 +88,8 @@ class PoseSolutions(NamedTuple):
     """IK solutions of a pose.
 
     Attributes:
-        rows: The solutions within the limits, shape (K, n). Those that differ by full turns from better ones come last.
+        rows: The solutions within the limits, shape (K, n). Of solutions that differ by full turns, all but the nearest
+            to the present configuration come last.
         cause: The cause of rejection if there is no solution.
     """
 

@@ -10,7 +10,9 @@ from ravemj.core.transforms import Vec3
 
 @dataclass(frozen=True)
 class CertifiedSpan:
-    """Time span of a motion in which a pair of shapes is undecided or exempt, or nearest.
+    """Time span of a motion, and the pair of shapes that is undecided, exempt from the proof, or nearest during it.
+
+    Undecided means neither proven free of collisions nor exempt.
 
     Attributes:
         start: Start time [s].

@@ -42,7 +42,7 @@ class Curve(NamedTuple):
 
 
 class Intervals(NamedTuple):
-    """Polynomial segments of a motion, of one degree.
+    """Polynomial segments of a motion, all of the same degree.
 
     Attributes:
         times: Start and end times [s], shape (m, 2).
@@ -54,7 +54,7 @@ class Intervals(NamedTuple):
 
     @classmethod
     def of(cls, curves: Sequence[Curve]) -> Self:
-        """Return curves as intervals of the highest of their degrees."""
+        """Return curves as intervals, elevated to the highest of their degrees."""
         number = max(len(curve.control) for curve in curves)
         control = [_elevation(len(curve.control), number) @ curve.control for curve in curves]
         return cls(np.array([(curve.start, curve.end) for curve in curves]), np.array(control))
@@ -68,7 +68,7 @@ class Intervals(NamedTuple):
         return type(self)(np.concatenate([self.times, others.times]), np.concatenate([self.control, others.control]))
 
     def boxes(self) -> tuple[Floats, Floats]:
-        """Return the middle configurations, and the largest differences from them; shape (m, n)."""
+        """Return the middle configuration of each interval, and the largest differences from it; shape (m, n) each."""
         middles = _middle(self.control.shape[1]) @ self.control
         return middles, np.abs(self.control - middles[:, None]).max(axis=1)
 

@@ -15,7 +15,7 @@ _ITERATIONS = 200
 
 
 def certified_detour(edges: Edges, proof: Proof, part: Floats, random: np.random.Generator) -> Floats | None:
-    """Return a nearby path with certified edges that replaces part of a path, shape (m, n); None if none is found."""
+    """Return a nearby path with certified edges that replaces the path ``part``, shape (m, n), or None."""
     space, around = edges.space, AROUND / edges.space.weights
     lower = np.maximum(part.min(axis=0) - around, space.lower)
     upper = np.minimum(part.max(axis=0) + around, space.upper)

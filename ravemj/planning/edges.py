@@ -63,7 +63,7 @@ class Edges:
         allowed: The test of one configuration.
         step: Length of a step of a tree, a weighted distance; 0 selects ``STEP``.
         proof: Additional test of lines that shorten a path, or None.
-        certifier: Returns the certifier of motions, or None.
+        certifier: Function that returns the certifier of motions, or None if there is none.
         clear: The test of one configuration on a line that shortens a path; None means ``allowed``.
 
     Attributes:
@@ -126,7 +126,7 @@ class Edges:
         return self._passes(self.allowed, start, step) and (not self.is_strict or self._is_proved(start, step))
 
     def shortcut(self, start: Floats, step: Floats) -> bool:
-        """Return whether a line is allowed and passes the proof required of shortcuts."""
+        """Return whether a line passes the tests of shortcuts: ``clear`` or, without it, ``allowed``; and ``proof``."""
         return self._passes(self.clear or self.allowed, start, step) and self._is_proved(start, step)
 
     def _passes(self, test: Allowed, start: Floats, step: Floats) -> bool:

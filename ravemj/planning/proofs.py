@@ -45,7 +45,7 @@ class PairTests(Protocol):
 
     @property
     def travel(self) -> Floats:
-        """Maximum relative travel [m]."""
+        """Maximum travel of the shapes relative to each other, from the middle of the box to its boundary [m]."""
         ...
 
     @property
@@ -83,7 +83,7 @@ class Spaces(Protocol):
 
 
 class Span(NamedTuple):
-    """Time span in which a pair of shapes is undecided or exempt.
+    """Time span in which a pair of shapes is not proven free of collisions, or is exempt from the proof.
 
     Attributes:
         start: Start time [s].
@@ -257,12 +257,12 @@ def _examined(spaces: Spaces, intervals: Intervals, cases: Cases) -> Iterator[_E
 
 
 def _subdivided(intervals: Intervals, cases: Cases, left: Ints, shares: Floats) -> tuple[Intervals, Cases]:
-    """Subdivide the intervals of the undecided cases.
+    """Subdivide the intervals of the undecided tests.
 
     Args:
         intervals: The intervals.
-        cases: Combinations of interval and pair.
-        left: Indices of the undecided cases.
+        cases: Tests, each of an interval and a pair of shapes.
+        left: Indices of the undecided tests.
         shares: Travel of each undecided pair during its interval, as a multiple of the gap between its geoms.
     """
     largest = np.zeros(len(intervals.times))
@@ -316,7 +316,7 @@ def _smallest(every: Sequence[_Examined]) -> tuple[list[_Proved], float]:
 
 
 def _raised(spaces: Spaces, near: Sequence[_Proved], wanted: float, proof: Proof) -> list[_Proved]:
-    """Subdivide intervals; return the parts, with new lower bounds for pairs whose bounds are below ``wanted`` [m]."""
+    """Subdivide intervals; return the parts. Pairs whose lower bounds are below ``wanted`` [m] get new ones."""
     whole = Intervals(np.array([interval.times for interval in near]), np.array([each.control for each in near]))
     parts, origins = whole.parts(np.full(len(near), _CUTS))
     known = np.full((len(origins), spaces.pair_count), np.inf)

@@ -90,7 +90,7 @@ def _one_way(steps: Floats, start: Floats, end: Floats, speed: Floats, accelerat
 
 
 def fit_from_rest(steps: Floats, duration: float, speed: Floats, acceleration: Floats) -> Ramps | None:
-    """Return the result of ``fit_ramps`` for motions from rest to rest, three times as fast."""
+    """Return the result of ``fit_ramps`` for motions from rest to rest, computed three times as fast."""
     first = last = np.full(len(steps), duration / 2)
     square = duration * duration  # of a long one infinite, where ** raises an error
     if not square:

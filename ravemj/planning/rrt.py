@@ -201,7 +201,7 @@ def connect(
     random: np.random.Generator,
     more: Sequence[MoreRoots | None] = (None, None),
 ) -> Search:
-    """RRT-Connect: grow trees from allowed starts and goals towards each other; ``more`` provides further roots.
+    """RRT-Connect: grow trees from allowed starts and goals towards each other; ``more`` are sources of further ones.
 
     At first, blocked edges are discarded; later, the trees keep the steps before an obstacle.
     """

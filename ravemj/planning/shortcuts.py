@@ -66,7 +66,7 @@ def _place(start: Floats, step: Floats, length: float, along: float) -> Floats:
 
 
 def straightened(edges: Edges, points: Floats) -> Floats:
-    """Return a path without the waypoints inside of straight lines; if many remain, also without detours."""
+    """Return a path without collinear waypoints; if more than ``_MOST_ENDS`` remain, also without detours."""
     steps = edges.space.difference(points[1:], points[:-1])
     lengths = np.linalg.norm(steps, axis=1)
     products = np.einsum("ij,ij->i", steps[1:], steps[:-1])
@@ -245,7 +245,7 @@ class ShortenedMotion:
             detour: Returns a path from the first to the last of some waypoints, shape (m, n), or None.
 
         Returns:
-            Whether there is a detour.
+            Whether the path was replaced.
         """
         (source, _), (values, _) = self._at(time, self._ends())
         pieces = self._straight

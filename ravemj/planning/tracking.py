@@ -33,8 +33,8 @@ class _Layer(NamedTuple):
 def track(space: Space, count: int, start: Floats, solve: Solve, connects: Connects) -> Floats:
     """Return the shortest path through solutions of all goals, up to the first unreachable goal, shape (m, n).
 
-    It starts at ``start`` if possible. The shortest paths to all solutions of a goal are kept, so that dead ends of one
-    IK branch do not affect the others.
+    Paths whose first configuration is near ``start`` are preferred. The shortest paths to all solutions of a goal are
+    kept, so that dead ends of one IK branch do not affect the others.
     """
     layers: list[_Layer] = []
     last = _Layer(start[None], np.zeros(1), np.zeros(1, dtype=np.intp))

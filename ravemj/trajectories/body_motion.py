@@ -21,7 +21,7 @@ class BodyMotion:
 
     Attributes:
         bodies: The moving bodies.
-        duration: The end time [s]; it starts at 0.
+        duration: The end time [s]; the motion starts at 0.
         place: Sets the configurations of the bodies at a time [s], clamped to joint limits.
         rows: Joint values of each body at the rows of the motion or the waypoints of the trajectory, shape (N, dof).
     """

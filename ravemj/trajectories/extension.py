@@ -55,7 +55,7 @@ class Extension:
         self.interpolation = next((group.interpolation for group in path.groups if is_position(group)), "")
 
     def segment(self) -> Waypoints:
-        """Return the two waypoints with velocities, without times."""
+        """Return the existing and the new waypoint of the segment, with velocities, without times."""
         anchor, groups = self._path.rows(self._anchor, self._anchor + 1), self._groups
         layouts = groups, derived(groups, 1)
         known = np.vstack([self._path.as_layout(anchor, layout, self._find_body) for layout in layouts])

@@ -70,7 +70,7 @@ def affine_values(groups: Sequence[Group], data: Floats, body: str | None, parts
 
 
 def pose(groups: Sequence[Group], data: Floats, body: str | None, start: Pose) -> Pose | None:
-    """Return ``start`` with the pose components in the data replaced; None if the data has none of the body."""
+    """Return the pose ``start`` with the components that the data has for the body; None if it has none."""
     matching = _of_body(groups, AFFINE[0], body)
     for group in matching:
         parts, axis = affine_parts(group)

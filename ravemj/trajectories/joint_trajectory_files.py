@@ -94,7 +94,7 @@ def write_joint_trajectory(
 
 
 def read_joint_trajectory(path: str | os.PathLike[str]) -> JointTrajectory:
-    """Read a motion from a file; see ``write_joint_trajectory`` for the formats. Return the motion.
+    """Return the motion in a file; ``write_joint_trajectory`` describes the formats.
 
     Args:
         path: The file, ``.yaml``, ``.json`` or ``.ros2.csv``.

@@ -71,7 +71,7 @@ def find_prefix(groups: Sequence[Group], name: str) -> Group | None:
 
 
 def find_compatible(groups: Sequence[Group], name: str, exact: bool = False) -> Group | None:
-    """Return the group of this name, else the most similar group of the same kind and body, or None."""
+    """Return the group ``name`` or, unless ``exact``, the most similar one of the same kind and body; else None."""
     for group in groups:
         if group.name == name:
             return group
@@ -166,7 +166,7 @@ def of_order(groups: Sequence[Group], order: int) -> list[Group]:
 
 
 def without(groups: Sequence[Group], name: str, exact: bool) -> list[Group]:
-    """Return the layout without groups of a name, or of a prefix; close gaps if any are removed."""
+    """Return the layout without the group ``name`` or, unless ``exact``, all whose names start with it; close gaps."""
     kept = [group for group in groups if not (group.name == name if exact else group.name.startswith(name))]
     return packed(kept) if len(kept) < len(groups) else copied(groups)
 

@@ -46,7 +46,7 @@ def body_motion(simulation: Simulation, given: MotionLike, body: BodyState | Non
             the first robot that has all these joints.
 
     Raises:
-        ArgumentError: the motion has another form, or does not fit the body.
+        ArgumentError: the motion has none of these forms, or does not fit the body.
         SourceError: the file cannot be read, or names other joints.
     """
     if isinstance(given, BodyMotion):

@@ -41,7 +41,7 @@ class MotionTable(NamedTuple):
     """Content of a motion file.
 
     Attributes:
-        source: The file, with the line of the column names in ``.csv``.
+        source: The file and, in ``.csv``, the line number of the column names.
         names: Column names by their number in the file, from 1; None if the file has none.
         motion: The columns over time.
     """
@@ -80,7 +80,7 @@ def read_motion(path: str | os.PathLike[str], joint_names: Sequence[str], curren
         current: (dof,) values of joints without a column [rad or m].
 
     Raises:
-        SourceError: The file cannot be read as a motion; ``source`` has the line for ``.csv``.
+        SourceError: The file cannot be read as a motion; its ``source`` has the line number in ``.csv``.
         ArgumentError: ``current`` does not fit ``joint_names``.
     """
     rest = checked_vector(current, len(joint_names), "current")
@@ -91,7 +91,7 @@ def read_table(path: str | os.PathLike[str]) -> MotionTable:
     """Return the content of a ``.csv`` or ``.npz`` file.
 
     Raises:
-        SourceError: The file cannot be read as a motion; ``source`` has the line for ``.csv``.
+        SourceError: The file cannot be read as a motion; its ``source`` has the line number in ``.csv``.
     """
     file = os.fspath(path)
     suffix = Path(file).suffix.lower()

@@ -29,7 +29,7 @@ def check_motion_file(path: str | os.PathLike[str]) -> None:
 def write_motion(
     path: str | os.PathLike[str], motion: Motion, joint_names: Sequence[str], notes: Sequence[str] = ()
 ) -> Path:
-    """Write a motion as ``.csv`` or ``.npz``; ``read_motion`` restores the exact numbers. Return the path.
+    """Write a motion as ``.csv`` or ``.npz``; ``read_motion`` restores the exact numbers.
 
     Args:
         path: The file.

@@ -37,7 +37,7 @@ class Stored(NamedTuple):
 
 
 def to_text(stored: Stored, kind: str) -> str:
-    """Return a trajectory as XML, with all digits."""
+    """Return a trajectory of type ``kind`` as XML, with all digits of its numbers."""
     numbers = "".join(f"{_digits(number)} " for number in stored.waypoints.data.ravel().tolist())
     quoted = stored.description.replace("]]>", "]]]]><![CDATA[>")
     description = f"<description><![CDATA[{quoted}]]></description>\n" if quoted else ""

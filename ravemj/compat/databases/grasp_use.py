@@ -212,9 +212,9 @@ class GraspUse(ApproachRays):
     ) -> Run:
         """Simulate a grasp, and repeat it with noise; ``mindist`` is 0 if the results differ too much.
 
-        They differ too much if their deviation exceeds 0.7 of the noise. It is the standard deviation of the robot's
-        coordinates, averaged over x, y, z, plus that of the gripper's joint values times ``jointmaxlengths``, averaged
-        over the joints.
+        They differ too much if their deviation exceeds 0.7 of the noise. The deviation is the standard deviation of the
+        robot's coordinates, averaged over x, y, z, plus that of the gripper's joint values times ``jointmaxlengths``,
+        averaged over the joints.
 
         Args:
             graspingnoise: Random displacement of the target [m].

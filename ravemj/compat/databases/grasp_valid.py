@@ -26,7 +26,7 @@ class ValidGrasp(NamedTuple):
         grasp: The row.
         number: Its index in ``grasps``.
         contacts: Positions and normals, shape (n, 6); empty without simulation of the fingers.
-        final: Joint values and ``T_world_robot`` after closing; the values alone without simulation.
+        final: Joint values and ``T_world_robot`` after closing; without simulation, the present joint values and None.
     """
 
     grasp: Floats

@@ -48,8 +48,8 @@ class LinkStatisticsModel(DatabaseGenerator):
         """Set the weights of the DOFs according to the displacement that they cause.
 
         Args:
-            type: Only OpenRAVE's 0: proportional to the maximum displacement of a point of the robot per unit of the
-                DOF.
+            type: Must be 0, OpenRAVE's number for weights proportional to the maximum displacement of a point of the
+                robot per unit of the DOF.
             weightmult: The mean of the weights.
         """
         if type != 0:

@@ -179,7 +179,7 @@ class SolvedJoints(DatabaseGenerator):
         """Return the path at which OpenRAVE would store the compiled solver; the file does not exist.
 
         Args:
-            read: Whether the file must exist; the result is then ''.
+            read: Whether the file must exist; if True, the result is ''.
         """
         return RaveFindDatabaseFile(self._file(f"{platform.machine()}.", ".so"), read)
 
@@ -187,7 +187,7 @@ class SolvedJoints(DatabaseGenerator):
         """Return the path at which OpenRAVE would store the statistics; the file does not exist.
 
         Args:
-            read: Whether the file must exist; the result is then ''.
+            read: Whether the file must exist; if True, the result is ''.
         """
         return RaveFindDatabaseFile(self._file("", ".pp"), read)
 

@@ -350,7 +350,7 @@ class BaseManipulation(Helper):
         outputtraj: bool | None = None,
         outputtrajobj: bool | None = None,
     ) -> Answer:
-        """Move the active DOFs to a configuration from which other joints can reach values without collisions.
+        """Move the active DOFs to a configuration from which other joints can reach ``jointvalues`` without collisions.
 
         The other joints, those of a hand for instance, are not moved.
 

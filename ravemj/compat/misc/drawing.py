@@ -155,13 +155,13 @@ def DrawLabel(
     color: ArrayLike = (0, 0, 0, 1),
     height: float = 0.05,
 ) -> GraphHandle | None:
-    """Draw a text beside a point; see ``env.drawlabel``. Return its handle.
+    """Draw a text beside a point; see ``env.drawlabel``.
 
     Args:
         env: The environment.
         label: The text.
         worldPosition: The point [m], shape (3,).
-        color: One colour, of the point.
+        color: Colour of the point, which is drawn, too: red, green, blue and opacity from 0 to 1.
         height: Not used.
 
     Returns:

@@ -49,11 +49,11 @@ class SpaceSamplerExtra:
 
     @staticmethod
     def hopf2quat(hopfarray: ArrayLike) -> Floats:
-        """Convert Hopf coordinates to rotations. Return unit quaternions.
+        """Convert Hopf coordinates to rotations; each brings a direction to x, then turns about x.
 
         Args:
-            hopfarray: For each the direction's angle to x, its azimuth about x (0: towards z, pi / 2: towards -y), and
-                the turn [rad], shape (N, 3).
+            hopfarray: For each rotation, the direction's angle to x, its azimuth about x (0: towards z, pi / 2: towards
+                -y), and the turn about x [rad], shape (N, 3).
 
         Returns:
             Unit quaternions [w, x, y, z], shape (N, 4).

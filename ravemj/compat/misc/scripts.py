@@ -102,14 +102,14 @@ class OpenRAVEGlobalArguments:
         """Apply the options to an environment.
 
         Args:
-            options: What ``parser.parse_args()`` returned first.
+            options: The first result of ``parser.parse_args()``.
             env: The environment.
             defaultviewer: Whether to attach a viewer if the options name none.
             returnviewer: Whether to return the viewer's name instead of attaching it.
             kwargs: OpenRAVE's; not used.
 
         Returns:
-            The name, or None.
+            The viewer's name if ``returnviewer``, else None.
 
         Raises:
             openrave_exception: the collision checker or physics engine is unknown.

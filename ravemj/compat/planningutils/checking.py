@@ -111,7 +111,8 @@ class DynamicsCollisionConstraint(ApiObject):
         """Set the tests.
 
         Args:
-            filtermask: ``ConstraintFilterOptions``; 2, for instance, ignores other bodies.
+            filtermask: ``ConstraintFilterOptions`` combined with ``|``; ``CheckSelfCollisions`` alone ignores other
+                bodies.
         """
         self._mask = int(filtermask)
 

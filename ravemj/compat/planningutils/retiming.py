@@ -244,7 +244,10 @@ class ActiveDOFTrajectoryRetimer(ApiObject):
 
 
 class ActiveDOFTrajectorySmoother(ActiveDOFTrajectoryRetimer):
-    """Smoother of several trajectories; see ``ActiveDOFTrajectoryRetimer``."""
+    """Smoother of trajectories of the DOFs that are active at its construction.
+
+    The arguments are those of ``ActiveDOFTrajectoryRetimer``; an empty ``plannername`` selects ``ParabolicSmoother``.
+    """
 
     _default = _SMOOTHER
 
@@ -292,7 +295,7 @@ class AffineTrajectoryRetimer(ApiObject):
             traj: The trajectory.
             maxvelocities: A velocity limit for each value.
             maxaccelerations: An acceleration limit for each value.
-            maxjerks: A jerk limit for each value; it may be omitted before ``hastimestamps``.
+            maxjerks: Not used; a bool in its place is taken as ``hastimestamps``.
             hastimestamps: Whether to keep existing times.
             releasegil: Not used.
         """

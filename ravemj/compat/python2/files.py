@@ -114,7 +114,7 @@ def loads(data: str | bytes) -> Any:
 
 
 def new_hash(name: str, string: object = b"") -> Any:
-    """Replacement of ``hashlib.new``."""
+    """Replacement of ``hashlib.new`` that also accepts text."""
     return hashlib.new(name, as_bytes(string))
 
 

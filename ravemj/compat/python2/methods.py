@@ -51,7 +51,7 @@ NAMES = {*_GONE, *_LISTED, "encode", "serialize", "sort"}
 
 
 def call(owner: Any, name: str, *args: Any, **options: Any) -> Any:
-    """Return the result of ``owner.name(...)`` in Python 2."""
+    """Call a method, and return what it returns in Python 2."""
     if name == "sort" and isinstance(owner, list):
         return _sort(owner, *args, **options)
     if name == "encode" and isinstance(owner, str):

@@ -84,7 +84,7 @@ class Planar:
 
     Attributes:
         normal: The direction of the revolute axes, shape (3, 1, 1).
-        centre: A point, shape (3, 1, 1).
+        centre: A point on the first revolute axis, shape (3, 1, 1).
         backward: Whether to solve for the inverse of the motion.
     """
 

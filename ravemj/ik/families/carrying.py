@@ -172,7 +172,7 @@ class NoFamilyError(Exception):
 
 
 def _plane_side(joint: Screw, middle: Screw, foot: Floats, plane: Plane, sign: float) -> Side:
-    """Return the invariants of a plane moved by ``joint``: tilt against the middle axis, and distance from ``foot``.
+    """Return the invariants of a plane moved by ``joint``: tilt against the middle axis, distance from point ``foot``.
 
     If ``sign`` is -1, the joint moves backwards.
     """
@@ -211,10 +211,10 @@ def _nearest(first: Screw, other: Screw) -> Floats:
 
 
 def _crossing(screws: Screws) -> tuple[int | None, str]:
-    """Find a direction in which motions by the prismatic middle and by the first or third joint have no component.
+    """Find a direction in which neither the prismatic middle joint nor one of the outer joints moves points.
 
     Returns:
-        The index of that first or third joint, 0 or 2, and ``along`` (the direction of its axis) or ``across``
+        The index of that outer joint, 0 or 2, and ``along`` (the direction is that of its axis) or ``across``
         (perpendicular to both axes); None and an empty string if there is no such direction.
     """
     middle = screws[1]

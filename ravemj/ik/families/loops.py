@@ -25,7 +25,7 @@ class Arm:
 
     Attributes:
         screws: The joints.
-        joints: Index of each joint in the chain; -1 for added joints, which must be 0.
+        joints: Index of each joint in the chain; -1 for virtual joints, whose values must be 0.
         locked: Positions of joints whose values are given.
     """
 

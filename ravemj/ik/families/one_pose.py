@@ -35,7 +35,7 @@ class OnePose:
 
     @classmethod
     def for_family(cls, family: Family) -> "OnePose | None":
-        """Return a solver for a family; None if its equations differ."""
+        """Return a solver for a family; None if it is not of the kind that the module describes, or needs a quartic."""
         if not isinstance(family, BlockFamily) or not isinstance(family.inside, Wrist) or family.arm.locked:
             return None
         turning = not any(screw.prismatic for screw in family.arm.screws)
@@ -102,8 +102,8 @@ class OnePose:
     def _numbers(self, line: tuple[Vector, Vector], point: Vector, sign: float) -> tuple[Turn, tuple[Turn, Turn]]:
         """Return the two quantities that the middle joint leaves unchanged as functions of the first or third joint.
 
-        They are those of ``point``, which this joint moves; each is constant + factors · (cos, sin) of its angle. If
-        ``sign`` is -1, the joint moves backwards.
+        They belong to ``point``, which this joint, with the axis ``line``, moves; each is constant + factors · (cos,
+        sin) of the angle. If ``sign`` is -1, the joint moves backwards.
         """
         axis, at = line
         one, centre = self._measure
@@ -133,7 +133,10 @@ class OnePose:
         return (c * cosine - s * sine, s * cosine + c * sine), (c * cosine + s * sine, s * cosine - c * sine)
 
     def _ends(self, two: Turn, tip: Vector, side: Vector) -> tuple[Turn, Turn, Turn]:
-        """Return cosine and sine of the three wrist joints, given the middle one."""
+        """Return cosine and sine of the three wrist joints, given those of the middle one, ``two``.
+
+        ``tip`` and ``side`` are the directions of the last axis and of ``Wrist.side`` after the rotation of the wrist.
+        """
         first, middle, last = self._wrist
         (along, across, later), (cosine, sine) = self._tips, two
         start = (

@@ -37,7 +37,8 @@ class Measure:
 
     Attributes:
         first: The first invariant is the dot product of this vector with the point or normal, shape (3, B, N).
-        second: Vector of the second invariant, or for spheres the centre of squared distances.
+        second: Vector whose dot product is the second invariant; if ``sphere``, the point from which distances are
+            measured.
         sphere: Whether the second invariant is a squared distance.
     """
 

@@ -1,8 +1,8 @@
 """Search for the families that an arm belongs to.
 
-An arm with fewer than six joints is completed by joints that must be 0: two intersecting axes get a third one through
-their intersection, and become a spherical wrist. The solutions of the completed arm include all solutions of the arm;
-those with other values of the added joints fail the check by forward kinematics.
+An arm with fewer than six joints is completed by virtual joints whose values must be 0: two intersecting axes get a
+third one through their intersection, and become a spherical wrist. The solutions of the completed arm include all
+solutions of the arm; those with other values of the virtual joints fail the check by forward kinematics.
 """
 
 import contextlib
@@ -117,7 +117,10 @@ def _commute(arm: Arm, slider: int, other: int) -> bool:
 
 
 def _examples(arm: Arm, start: Floats) -> tuple[Transform, Locked]:
-    """Return motions of an arm in random configurations, applied to ``start``, and the values of locked joints."""
+    """Return motions of an arm in random configurations, and the values of locked joints.
+
+    The translation of a motion is the moved point ``start``.
+    """
     rng = np.random.default_rng(_SEED)
     seen: Transform | None = None
     locked: dict[int, Floats] = {}

@@ -163,7 +163,7 @@ class Descent:
         return DescentResult(steps, _cost(self._measured()), stopped)
 
     def _settle(self, state: _State, longest: float) -> None:
-        """Correct errors of all priorities but the lowest that linearized steps left behind.
+        """Correct the errors that linearization left in all priorities but the lowest.
 
         Strong damping suppresses motions for the lowest priority.
         """
@@ -327,7 +327,7 @@ def _weighted(measured: Sequence[tuple[WeightedTask, TaskRows]], count: int) -> 
 
 @lru_cache(maxsize=64)
 def _factors(tasks: tuple[tuple[float, float, int], ...]) -> tuple[Floats, Floats]:
-    """Return factors of Jacobian rows, (m, 1), and errors, (m,); a task is (weight, gain, number of rows)."""
+    """Return the factors of Jacobian rows, (m, 1), and of errors, (m,), for tasks (weight, gain, number of rows)."""
     sizes = [size for _, _, size in tasks]
     roots = np.repeat([math.sqrt(weight) for weight, _, _ in tasks], sizes)
     return roots[:, None], roots * np.repeat([gain for _, gain, _ in tasks], sizes)

@@ -20,7 +20,7 @@ _RANK = 1e-9
 _SOLVED = 1
 """Exit flag of daqp for an optimal solution."""
 _CAUTION = 1e-2
-"""Damping of the motion that corrects violated inequalities: where a distance is largest, its Jacobian vanishes."""
+"""Damping of the motion that corrects violated inequalities, since the Jacobian of a distance is 0 at its maximum."""
 _SETTINGS = {"primal_tol": 1e-11, "dual_tol": 1e-11, "iter_limit": 2000}
 
 
@@ -45,7 +45,8 @@ def minimise_levels(
 
     Args:
         levels: Weighted rows, the most important ones first.
-        damping: Factor of the squared displacement in the cost of a level, per squared error of that level.
+        damping: Weight of the squared displacement in a level's cost, as a multiple of ``squared`` of the level's
+            error.
         lower: Minimum displacements, shape (n,).
         upper: Maximum displacements, shape (n,).
         inequalities: Inequality constraints; unsatisfiable ones are violated as little as possible.
@@ -87,7 +88,10 @@ _Room = tuple[Floats, Floats, Floats]
 
 
 def _room(x: Floats, lower: Floats, upper: Floats, rows: Floats, least: Floats, basis: Floats) -> _Room:
-    """Return a matrix and bounds of its product with z that keep ``x + basis @ z`` feasible; z = 0 satisfies them."""
+    """Return a matrix and bounds of its product with z that keep ``x + basis @ z`` feasible; z = 0 satisfies them.
+
+    The constraints are ``lower``, ``upper`` and ``rows @ x >= least``; those that ``x`` violates may not get worse.
+    """
     below = np.concatenate([np.minimum(lower - x, 0.0), np.minimum(least - rows @ x, 0.0)])
     above = np.concatenate([np.maximum(upper - x, 0.0), np.full(len(least), 1e30)])
     matrix = np.vstack([basis, rows @ basis])

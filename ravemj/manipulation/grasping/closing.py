@@ -36,7 +36,7 @@ _PARALLEL = 1e-9
 """Cosine of the angle between a stop plane's normal and the approach below which the hand never reaches the plane."""
 
 _IS_PLANE = 0.5
-"""Squared norm of the four numbers of a stop plane above which it is used; OpenRAVE's."""
+"""Squared norm of the four numbers of a stop plane up to which they mean that there is none; OpenRAVE's."""
 
 
 class Touches(Protocol):
@@ -221,9 +221,8 @@ def tool_start(approach: Approach) -> Floats:
 def displaced(target: Target, noise: float, random: np.random.Generator) -> Target:
     """Return a target with a random error of its pose, OpenRAVE's ``graspingnoise``.
 
-    A random number divides the noise between a translation and a rotation about the centre of its bounding
-    sphere. As in
-    OpenRAVE, the angle [rad] is proportional to the radius [m], not to its inverse.
+    A random number divides the noise between a translation and a rotation about the centre of the target's bounding
+    sphere. As in OpenRAVE, the angle [rad] is proportional to the radius [m], not to its inverse.
 
     Args:
         target: The target.
@@ -241,11 +240,11 @@ def displaced(target: Target, noise: float, random: np.random.Generator) -> Targ
 
 
 def close(hand: Hand, target: Target | None, approach: Approach, touches: Touches, steps: Steps = STEPS) -> Closed:
-    """Simulate a grasp: place the hand, fly, move back by the standoff, and close each finger up to its contact.
+    """Simulate a grasp: place the hand, move it into contact, retreat by the standoff, and close each finger.
 
     Args:
         hand: The robot.
-        target: The body to grasp; None if the hand does not fly.
+        target: The body to grasp; None if only the fingers move.
         approach: The approach of the hand.
         touches: The collision test.
         steps: Step lengths. Contacts are found to a sixteenth of the fine step.

@@ -344,7 +344,7 @@ class _CandidateSearch:
         return self._robot.simulation.collisions().rays.first_hits(rays, self._geoms)
 
     def _flown(self, surface: Floats) -> Iterator[_Make]:
-        """Yield candidates in which the hand flies to each surface point, with each roll and standoff."""
+        """Yield candidates: the hand moves against each surface point's normal, with each roll and standoff."""
         tool_direction = np.array(self._arm.direction)
         for row in surface:
             for roll in 2 * np.pi * np.arange(self._choices.rolls) / self._choices.rolls:

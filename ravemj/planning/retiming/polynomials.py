@@ -165,7 +165,7 @@ class Linear:
 
 
 def _of_base(step: Floats, limits: PathLimits) -> tuple[Floats, Floats]:
-    """Return the distance and the maximum speed of each joint value; of a base, of its translation and its rotation."""
+    """Return distances and maximum speeds: of each joint value, and of the translation and the rotation of a base."""
     parts = limits.coordinates
     translation, rotation = list(parts.translation), list(parts.rotation)
     rest = [column for column in range(len(step)) if column not in parts.translation + parts.rotation]

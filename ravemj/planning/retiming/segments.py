@@ -14,7 +14,7 @@ ENOUGH = 1e-9
 """Rounding tolerance [s] of given durations that are shorter than the minimum."""
 
 LONGER = 1.05
-"""Factor by which a duration without formula grows until the limits hold, as in OpenRAVE."""
+"""Factor by which a duration without a closed formula is increased until the limits hold, as in OpenRAVE."""
 
 MOST_ATTEMPTS = 500
 
