@@ -167,7 +167,8 @@ def default_free(chain: Chain, name: str, dof: int) -> list[int]:
     pointing = chain.T_base_tool[:3, :3] @ chain.direction
     to_tool = chain.T_base_tool[:3, 3] - chain.points[-1]
     turned = np.abs(np.cross(chain.axes[-1], [pointing, to_tool])).max() < _ALONG and not chain.prismatic[-1]
-    return ([joints.pop()] if turned and surplus else [])[:surplus] + joints[: surplus - int(turned)]
+    last = [joints.pop()] if turned and surplus else []
+    return last + joints[: surplus - len(last)]
 
 
 def default_steps(

@@ -13,7 +13,7 @@ from ravemj.ik import Chain, Task, make_solver
 from ravemj.ik.candidates import everything, nearest_first
 from ravemj.ik.intervals import excess, intervals, rows_at
 from ravemj.ik.limits import beyond_limits, clamped, nearest_turns
-from ravemj.ik.redundancy import free_range
+from ravemj.ik.redundancy import default_free, free_range
 
 NARROW = [
     (PANDA_LIMITED, [-1.87, -1.69, -0.3, -0.75, 1.75, 1.79, 2.84]),
@@ -280,3 +280,11 @@ class TestRotations:
                 skewed = np.cross(np.eye(3), turn)
                 other = rotation @ np.linalg.solve(np.eye(3) - skewed, np.eye(3) + skewed)
                 assert np.linalg.norm(other - near[:3, :3]) > np.linalg.norm(rotation - near[:3, :3]) - 1e-9
+
+
+@pytest.mark.parametrize(("joints", "free"), [(5, []), (6, [5]), (7, [6, 0])])
+def test_default_free_joints_for_a_position_and_direction(joints, free):
+    axes = np.array([[0, 0, 1], [0, 1, 0]] * 4)[7 - joints : 7]  # the last one is the tool's direction, z
+    points = [[0, 0, 0.2 * joint] for joint in range(joints)]
+    chain = Chain.of(axes, points, T_base_tool=[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0.2 * joints], [0, 0, 0, 1]])
+    assert default_free(chain, "TranslationDirection5D", 5) == free
