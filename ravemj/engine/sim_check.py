@@ -53,7 +53,7 @@ class Point:
 
 
 def check(translation: Translation) -> Iterator[Point]:
-    """Yield the criteria of a model one by one; together they take seconds."""
+    """Yield the results of all checks of a translated model, one by one; together they take seconds."""
     yield _names(translation)
     yield _numbers(translation)
     yield _shapes(translation)

@@ -149,7 +149,7 @@ class Proof:
 
 
 def is_proved(spaces: Spaces, curves: Sequence[Curve], exempt: Sequence[Span] = ()) -> bool:
-    """Return whether a motion is proven free of collisions, except for pairs on their exempt spans."""
+    """Return whether a motion is proven free of collisions, except for the pairs and times in ``exempt``."""
     return not any(examined.undecided for examined in _examined(spaces, *_asked(spaces, curves, exempt)))
 
 

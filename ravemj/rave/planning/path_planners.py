@@ -169,9 +169,9 @@ class PathPlanner(Planner):
         return self._failed(str(certificate)) if values.certify == "required" else status
 
     def _alternatives(self, values: Values, search: Search | None) -> Iterator[tuple[Search, Values]]:
-        """Yield alternative paths whose shortcuts are certified, with their post-processing parameters.
+        """Yield other paths with post-processing parameters that admit only certified shortcuts.
 
-        In the last path, all edges are certified.
+        In the last path, the edges are certified, too.
         """
         assert search is not None, "it has found the motion"
         proving = replace(values, conditions=replace(values.conditions, proves=True))
