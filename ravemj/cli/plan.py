@@ -85,7 +85,7 @@ def _about_itself(told: str, robot: Robot, model: str) -> str:
 
 
 def _arm(env: Environment, options: argparse.Namespace) -> Manipulator | None:
-    """Return the moving manipulator; None for a robot without manipulators and a goal of joint values."""
+    """Return the moving manipulator; None if the goal is joint values and the robot has no manipulator."""
     robots = chosen_robots(env, options.robot)
     has_arms = any(robot.GetManipulators() for robot in robots)
     needs_arm = options.manip or options.pose or options.near or options.region or options.upright

@@ -285,7 +285,7 @@ class ClosedForm:
 
 
 def _flat(turns: Turns) -> Turns:
-    """Flatten branches and poses of joint values (cosine and sine, or distances) into one axis."""
+    """Flatten the axes of branches and poses of joint values into one; values are (cosine, sine) or distances."""
     if isinstance(turns, np.ndarray):
         return turns.reshape(*turns.shape[:2], -1)
     return [turn.reshape(len(turn), -1) for turn in turns]

@@ -50,7 +50,7 @@ class Shown(NamedTuple):
 
 
 def answer_scene(check: Check, verdict: Verdict) -> Shown:
-    """Return the answer of a verdict drawn together with the right one.
+    """Return the student's answer in ``verdict``, drawn together with the right one.
 
     Raises:
         RavemjError: the answer is not numbers of the right shape, or the exercise has no picture.

@@ -83,7 +83,9 @@ class ToolConstraint(NamedTuple):
     threshold: float
 
     def checked(self, T_world_tool: Floats) -> tuple[Floats, Floats, Floats, float]:
-        """Return the checked fields with exact rotations; if ``T_tool_point`` is None, it follows from the tool pose.
+        """Return task frame, ``T_tool_point``, freedoms and threshold, checked, with rotations orthonormal to rounding.
+
+        If ``T_tool_point`` is None, it follows from the tool pose.
 
         Raises:
             ArgumentError: the numbers are invalid.

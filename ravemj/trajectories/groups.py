@@ -89,10 +89,10 @@ def joint_indices(group: Group) -> list[int]:
 
 
 def affine_parts(group: Group) -> tuple[int, Vec3]:
-    """Return the pose components of the values (``DOFAffine``), and the axis of a rotation about an axis.
+    """Return which pose components (``DOFAffine``) a group's values are, and the axis of a rotation about an axis.
 
     Raises:
-        ArgumentError: the name does not contain them.
+        ArgumentError: the group's name does not say so.
     """
     words = group.name.split()[2:]
     if not words:

@@ -56,7 +56,7 @@ def own_bodies(
 
 
 def own_scene(reader: TreeReader, diagnostics: Diagnostics) -> tuple[Scene | None, tuple[Pair, ...]]:
-    """Return the scene properties in a text of the model, and the pairs of MuJoCo bodies that touched at the start."""
+    """Return scene properties and pairs of MuJoCo bodies that touch at the start, from a ``<text>`` of the MJCF."""
     for text in reader.compiled.spec.texts:
         if text.name == SCENE:
             source = reader.compiled.document.source(text.name, "text")
@@ -212,7 +212,7 @@ class _OwnBody:
         return _same_pose(expected, there) and _near(_floats(attributes["rgba"]), rgba, _COLOUR_NEAR)
 
     def _joint(self, number: int, joint: Joint) -> Joint:
-        """Return a joint with the user's edits applied; unchanged if the kinematic tree attaches no link by it."""
+        """Return a joint with the user's edits applied; unchanged if it carries no link in the kinematic tree."""
         if not joint.places_child or self._placing.get(joint.child) != number:
             return joint
         T_parent_child, names = self._pose(joint.child), self._names.joints[number]

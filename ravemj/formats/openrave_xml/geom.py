@@ -270,7 +270,7 @@ def _parts(geom: _Geom, file: MeshFile | None, element: Element, scope: Geometry
 
 
 def _found(geom: _Geom, file: MeshFile | None, element: Element, scope: GeometryScope) -> MeshFile | None:
-    """Return a mesh file with its full path; None if the file has no parts."""
+    """Return a mesh file with its full path; None if the file contains no mesh."""
     if file is None or not _parts(geom, file, element, scope):
         return None
     return file._replace(name=geom.context.find(file.name, element.source, *_folders(element, scope)) or file.name)

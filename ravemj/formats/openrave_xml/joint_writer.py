@@ -31,7 +31,7 @@ def listed_poses(body: KinBody) -> list[Pose]:
 
 
 def needs_values(body: KinBody) -> bool:
-    """Return whether a joint value differs from the ``<initial>`` value, clamped to the limits."""
+    """Return whether a joint value differs from the ``<initial>`` value moved within the limits."""
     axes = (axis for joint in body.joints if not joint.static for axis in joint.axes)
     return any(axis.value != clamp(axis, axis.reference) for axis in axes)
 
